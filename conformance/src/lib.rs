@@ -1,0 +1,1 @@
+//! Conformance vectors and the oracles that tests and fuzz targets share.

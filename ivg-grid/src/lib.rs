@@ -1,0 +1,1 @@
+//! The mathematics on a dense irradiance vector grid: reconstruction, interpolation, push-pull, metrics.

@@ -1,0 +1,20 @@
+//! Scenes in memory: import (OBJ, glTF, PLY), checks, lights files, the effect plan, export.
+//!
+//! Units everywhere: metres, watts, W/m², W/(m² sr), W/sr; colours are linear RGB with Rec. 709 primaries.
+//! The world frame is right-handed and is the source file's own frame scaled to metres.
+//!
+//! This crate knows no rays, no GPU, and none of the streaming formats.
+
+mod camera;
+mod light;
+mod material;
+mod mesh;
+mod plan;
+mod scene;
+
+pub use camera::Camera;
+pub use light::{Light, LightKind};
+pub use material::{Material, Texture, TextureFormat};
+pub use mesh::Mesh;
+pub use plan::{Cost, Effect, EffectPlan, Need, PlannedEffect};
+pub use scene::{FlatScene, Node, Scene, Unsupported};

@@ -1,0 +1,1 @@
+//! Serving and fetching scene directories: HTTP ranges, scheduling, resuming.

@@ -1,0 +1,1 @@
+//! What all our formats share: magic, version, chunk and record envelopes, checksums, limits, errors.

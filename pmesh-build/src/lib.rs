@@ -1,0 +1,1 @@
+//! Finding the collapse order of an indexed mesh: half-edge collapses by quadric cost.

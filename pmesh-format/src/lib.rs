@@ -1,0 +1,1 @@
+//! The .pmesh format: Melax progressive meshes as packets, every vertex count a level.
