@@ -1,1 +1,17 @@
 //! The mathematics on a dense irradiance vector grid: reconstruction, interpolation, push-pull, metrics.
+//!
+//! An [`IrradianceGrid`] holds six irradiance vectors a vertex (one for each hemisphere +x −x +y −y +z −z, three
+//! colour channels each) on an [`ivg_format::Lattice`], and knows three different things about every vertex:
+//! whether it was *received*, whether light reaches it (*validity*), and whether geometry cuts the way to its
+//! neighbours (*blocked edges*).
+//!
+//! World space is right-handed, in metres; colours are linear RGB with Rec. 709 primaries; an irradiance vector
+//! points towards where the light comes from and has the unit W/m².
+
+#![forbid(unsafe_code)]
+
+mod error;
+mod grid;
+
+pub use error::GridError;
+pub use grid::{BLOCKED_BITS, DEFAULT_MAX_VERTICES, HemisphereVectors, IrradianceGrid, VALIDITY_FREE};

@@ -1,0 +1,58 @@
+//! What can go wrong with a grid.
+
+use std::fmt;
+
+/// Why a grid could not be made or changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GridError {
+    /// The lattice has more vertices than the caller allows, or than fit this machine's memory addresses.
+    TooManyVertices {
+        /// Vertices of the lattice.
+        vertices: u64,
+        /// Vertices allowed.
+        limit: u64,
+    },
+    /// The lattice breaks a rule of its own.
+    Lattice(ivg_format::LatticeError),
+    /// An array does not have one element a vertex.
+    Length {
+        /// Name of the array.
+        array: &'static str,
+        /// Elements it has.
+        found: usize,
+        /// Vertices of the lattice.
+        vertices: usize,
+    },
+}
+
+impl fmt::Display for GridError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooManyVertices { vertices, limit } => write!(
+                f,
+                "the lattice has {vertices} vertices, but at most {limit} are allowed; raise the limit or use a \
+                 coarser grid"
+            ),
+            Self::Lattice(error) => error.fmt(f),
+            Self::Length { array, found, vertices } => {
+                write!(f, "the array of {array} has {found} elements; the lattice has {vertices} vertices")
+            }
+        }
+    }
+}
+
+impl std::error::Error for GridError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Lattice(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl From<ivg_format::LatticeError> for GridError {
+    fn from(error: ivg_format::LatticeError) -> Self {
+        Self::Lattice(error)
+    }
+}

@@ -1,0 +1,277 @@
+//! The dense grid in memory: what is known about every vertex of a lattice.
+
+use ivg_format::Lattice;
+
+use crate::GridError;
+
+/// Six irradiance vectors of one vertex: `[hemisphere][rgb][xyz]` \[W/m²\].
+///
+/// Hemispheres in the order +x −x +y −y +z −z, channels linear RGB. The vector of hemisphere d is the integral of
+/// radiance times direction over the directions w with w·d > 0 (Web3D 2008, equation 1), so its component along d
+/// is never negative.
+pub type HemisphereVectors = [[[f32; 3]; 3]; 6];
+
+/// Vertices that a grid may have unless the caller allows another number: 256³, which take 3.7 GB.
+pub const DEFAULT_MAX_VERTICES: u64 = 1 << 24;
+
+/// Validity of a vertex whose surroundings are all free. 0 means inside geometry: no light reaches the vertex.
+pub const VALIDITY_FREE: u8 = 255;
+
+/// The bits of a vertex's blocked edges that have a meaning: bit 0, 1, 2 = geometry cuts the edge to the +x, +y,
+/// +z neighbour.
+pub const BLOCKED_BITS: u8 = 0b111;
+
+/// Irradiance vectors on the vertices of a lattice, and what is known about each vertex.
+///
+/// Three things are kept apart: whether a vertex was **received** (its vectors have arrived), whether it is **valid**
+/// (light reaches it; 0 = inside geometry), and which of its **edges are blocked** (cut by geometry). A value of zero
+/// is darkness, never a sign that something is missing.
+///
+/// A vertex is named by its linear index `i + nx (j + ny k)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IrradianceGrid {
+    lattice: Lattice,
+    vectors: Vec<HemisphereVectors>,
+    received: BitSet,
+    validity: Vec<u8>,
+    blocked_edges: Vec<u8>,
+    filled: bool,
+}
+
+impl IrradianceGrid {
+    /// A grid of at most [`DEFAULT_MAX_VERTICES`] vertices, none received, all valid, no edge blocked.
+    ///
+    /// # Errors
+    ///
+    /// [`GridError::Lattice`] if the lattice breaks its own rules, [`GridError::TooManyVertices`] if it is too
+    /// large. Nothing is allocated then.
+    pub fn new(lattice: Lattice) -> Result<Self, GridError> {
+        Self::with_limit(lattice, DEFAULT_MAX_VERTICES)
+    }
+
+    /// Like [`IrradianceGrid::new`], of at most `max_vertices` vertices. A vertex takes 219 bytes.
+    ///
+    /// # Errors
+    ///
+    /// As [`IrradianceGrid::new`]. Grids of 2³² vertices or more are refused whatever the limit.
+    pub fn with_limit(lattice: Lattice, max_vertices: u64) -> Result<Self, GridError> {
+        let count = checked_vertices(&lattice, max_vertices)?;
+        Ok(Self {
+            lattice,
+            vectors: vec![[[[0.0; 3]; 3]; 6]; count],
+            received: BitSet::new(count),
+            validity: vec![VALIDITY_FREE; count],
+            blocked_edges: vec![0; count],
+            filled: false,
+        })
+    }
+
+    /// A grid whose vertices have all been received: what a baker makes.
+    ///
+    /// # Errors
+    ///
+    /// As [`IrradianceGrid::new`], and [`GridError::Length`] if there is not one element a vertex.
+    pub fn from_parts(
+        lattice: Lattice,
+        vectors: Vec<HemisphereVectors>,
+        validity: Vec<u8>,
+        blocked_edges: Vec<u8>,
+    ) -> Result<Self, GridError> {
+        let count = checked_vertices(&lattice, u64::from(u32::MAX))?;
+        check_length("irradiance vectors", vectors.len(), count)?;
+        check_length("validity", validity.len(), count)?;
+        check_length("blocked edges", blocked_edges.len(), count)?;
+        let mut received = BitSet::new(count);
+        (0..count).for_each(|index| received.insert(index));
+        let mut grid = Self { lattice, vectors, received, validity, blocked_edges, filled: false };
+        grid.blocked_edges.iter_mut().for_each(|bits| *bits &= BLOCKED_BITS);
+        Ok(grid)
+    }
+
+    /// Where the vertices are.
+    #[must_use]
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// Number of vertices of the lattice.
+    #[must_use]
+    pub fn vertex_count(&self) -> usize {
+        self.vectors.len()
+    }
+
+    /// Number of vertices received so far.
+    #[must_use]
+    pub fn received_count(&self) -> usize {
+        self.received.count
+    }
+
+    /// Number of vertices that light reaches.
+    #[must_use]
+    pub fn valid_count(&self) -> usize {
+        self.validity.iter().filter(|&&validity| validity > 0).count()
+    }
+
+    /// Number of edges between neighbours that geometry cuts.
+    #[must_use]
+    pub fn blocked_edge_count(&self) -> usize {
+        self.blocked_edges.iter().map(|bits| bits.count_ones() as usize).sum()
+    }
+
+    /// Whether every vertex has a value because the grid came out of [`fill`](crate::fill()).
+    #[must_use]
+    pub fn is_filled(&self) -> bool {
+        self.filled
+    }
+
+    /// Whether the vectors of a vertex have arrived.
+    ///
+    /// # Panics
+    ///
+    /// If `index` is not less than the number of vertices.
+    #[must_use]
+    pub fn is_received(&self, index: usize) -> bool {
+        assert!(index < self.vertex_count(), "vertex {index} outside the lattice");
+        self.received.contains(index)
+    }
+
+    /// Whether light reaches a vertex (validity above 0).
+    ///
+    /// # Panics
+    ///
+    /// If `index` is not less than the number of vertices.
+    #[must_use]
+    pub fn is_valid(&self, index: usize) -> bool {
+        self.validity[index] > 0
+    }
+
+    /// Whether a vertex has vectors: received, or given by [`fill`](crate::fill()).
+    ///
+    /// # Panics
+    ///
+    /// If `index` is not less than the number of vertices.
+    #[must_use]
+    pub fn has_value(&self, index: usize) -> bool {
+        self.filled || self.is_received(index)
+    }
+
+    /// The vectors of a vertex, or nothing where it has none.
+    #[must_use]
+    pub fn get(&self, index: usize) -> Option<&HemisphereVectors> {
+        let vectors = self.vectors.get(index)?;
+        self.has_value(index).then_some(vectors)
+    }
+
+    /// The vectors of all vertices in order of the linear index; zero where a vertex has none.
+    #[must_use]
+    pub fn vectors(&self) -> &[HemisphereVectors] {
+        &self.vectors
+    }
+
+    /// The validity of all vertices in order of the linear index: 0 inside geometry … 255 all free.
+    #[must_use]
+    pub fn validity(&self) -> &[u8] {
+        &self.validity
+    }
+
+    /// The blocked edges of all vertices in order of the linear index: bits 0, 1, 2 for the +x, +y, +z neighbour.
+    #[must_use]
+    pub fn blocked_edges(&self) -> &[u8] {
+        &self.blocked_edges
+    }
+
+    /// Receives the vectors of a vertex; a second time replaces the first.
+    ///
+    /// Values filled in before stay as they are: fill the grid of received vertices again.
+    ///
+    /// # Panics
+    ///
+    /// If `index` is not less than the number of vertices.
+    pub fn set(&mut self, index: usize, vectors: &HemisphereVectors) {
+        self.vectors[index] = *vectors;
+        self.received.insert(index);
+    }
+
+    /// Sets the validity of a vertex: 0 inside geometry … 255 all free.
+    ///
+    /// # Panics
+    ///
+    /// If `index` is not less than the number of vertices.
+    pub fn set_validity(&mut self, index: usize, validity: u8) {
+        self.validity[index] = validity;
+    }
+
+    /// Sets which edges of a vertex geometry cuts: bits 0, 1, 2 for the +x, +y, +z neighbour; other bits are dropped.
+    ///
+    /// # Panics
+    ///
+    /// If `index` is not less than the number of vertices.
+    pub fn set_blocked_edges(&mut self, index: usize, bits: u8) {
+        self.blocked_edges[index] = bits & BLOCKED_BITS;
+    }
+
+    /// The largest absolute component of all vectors \[W/m²\]: what an upload at half precision scales by.
+    #[must_use]
+    pub fn largest_component(&self) -> f32 {
+        self.vectors
+            .as_flattened()
+            .as_flattened()
+            .as_flattened()
+            .iter()
+            .fold(0.0, |largest, c| largest.max(c.abs()))
+    }
+
+    /// The same grid with other vectors, every vertex valued.
+    pub(crate) fn filled_with(&self, vectors: Vec<HemisphereVectors>) -> Self {
+        debug_assert_eq!(vectors.len(), self.vertex_count());
+        Self {
+            lattice: self.lattice,
+            vectors,
+            received: self.received.clone(),
+            validity: self.validity.clone(),
+            blocked_edges: self.blocked_edges.clone(),
+            filled: true,
+        }
+    }
+}
+
+fn checked_vertices(lattice: &Lattice, limit: u64) -> Result<usize, GridError> {
+    lattice.check()?;
+    let vertices = lattice.vertex_count();
+    let limit = limit.min(u64::from(u32::MAX));
+    match usize::try_from(vertices) {
+        Ok(count) if vertices <= limit => Ok(count),
+        _ => Err(GridError::TooManyVertices { vertices, limit }),
+    }
+}
+
+fn check_length(array: &'static str, found: usize, vertices: usize) -> Result<(), GridError> {
+    if found == vertices { Ok(()) } else { Err(GridError::Length { array, found, vertices }) }
+}
+
+/// One bit a vertex, and how many are set.
+#[derive(Clone, Debug, PartialEq)]
+struct BitSet {
+    words: Vec<u64>,
+    count: usize,
+}
+
+impl BitSet {
+    fn new(len: usize) -> Self {
+        Self { words: vec![0; len.div_ceil(64)], count: 0 }
+    }
+
+    fn contains(&self, index: usize) -> bool {
+        self.words[index / 64] >> (index % 64) & 1 == 1
+    }
+
+    fn insert(&mut self, index: usize) {
+        let word = &mut self.words[index / 64];
+        let bit = 1 << (index % 64);
+        self.count += usize::from(*word & bit == 0);
+        *word |= bit;
+    }
+}
+
+#[cfg(test)]
+mod tests;
