@@ -1,0 +1,4 @@
+//! What the tests share: a runtime, a server on loopback, and HTTP spoken by hand.
+#![allow(dead_code, reason = "each test binary uses its own part")]
+
+pub(crate) mod http;
