@@ -12,6 +12,11 @@
 
 mod error;
 mod grid;
+pub mod integrate;
+mod metrics;
+mod reconstruct;
 
 pub use error::GridError;
 pub use grid::{BLOCKED_BITS, DEFAULT_MAX_VERTICES, HemisphereVectors, IrradianceGrid, VALIDITY_FREE};
+pub use metrics::{IrradianceError, relative_rmse};
+pub use reconstruct::{Reconstruction, TANGENTIAL_SHARE, reconstruct, reconstruct_signed, three_vector};
