@@ -1,2 +1,80 @@
-//! Commands of the workspace.
-fn main() {}
+//! `cargo xtask`: see the library's documentation, or `cargo xtask --help`.
+
+#![forbid(unsafe_code)]
+
+use clap::{Args, Parser, Subcommand};
+use std::process::ExitCode;
+use xtask::runner::{self, Context};
+use xtask::steps::{self, Selection};
+use xtask::{tidy, workspace_root};
+
+/// Commands of the workspace.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run the whole suite, stopping at the first failure.
+    Test(TestOptions),
+    /// Look at the sources: file lengths, left-over markers, machine paths, README and CI agree.
+    Tidy,
+}
+
+#[derive(Debug, Args)]
+struct TestOptions {
+    /// Install what is missing: a software Vulkan driver (apt-get), cargo-fuzz (into target/tools).
+    #[arg(long)]
+    install: bool,
+    /// Leave out fuzzing and all but the default feature set.
+    #[arg(long)]
+    fast: bool,
+    /// Run only the steps whose name contains WORD; may be repeated.
+    #[arg(long, value_name = "WORD")]
+    only: Vec<String>,
+    /// Name the steps and the commands they run, and do nothing else.
+    #[arg(long)]
+    list: bool,
+    /// How long each fuzz target runs, in seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 5)]
+    fuzz_seconds: u32,
+}
+
+fn main() -> ExitCode {
+    let mut context = Context::new(workspace_root());
+    let passed = match CommandLine::parse().command {
+        Command::Test(options) => {
+            let selection = Selection {
+                install: options.install,
+                fast: options.fast,
+                only: options.only,
+                fuzz_seconds: options.fuzz_seconds,
+            };
+            let steps = steps::selected(&selection);
+            if steps.is_empty() {
+                eprintln!(
+                    "no step's name contains {:?}; `cargo xtask test --list` names them all",
+                    selection.only
+                );
+                return ExitCode::from(2);
+            }
+            if options.list {
+                runner::list(&steps, &mut std::io::stdout())
+            } else {
+                runner::run(&steps, &mut context, &mut std::io::stdout())
+            }
+        }
+        Command::Tidy => runner::run(&[tidy::step()], &mut context, &mut std::io::stdout()),
+    };
+    match passed {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("cannot write to the terminal: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

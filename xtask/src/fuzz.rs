@@ -1,0 +1,98 @@
+//! The fuzz targets: built, and each run for a while. They need an unstable compiler flag, so a nightly toolchain or, where
+//! there is none, the default one with `RUSTC_BOOTSTRAP=1`.
+
+use crate::invocation::Invocation;
+use crate::runner::Context;
+use crate::tools;
+use std::path::Path;
+use std::time::Instant;
+
+#[cfg(test)]
+mod tests;
+
+/// Longest input that the fuzzer makes up \[bytes\]; seeds are smaller, and longer inputs are slower, not better.
+const LONGEST_INPUT: u32 = 4096;
+/// An input that takes longer than this is a finding \[s\].
+const SLOW_INPUT: u32 = 10;
+/// A target that uses more memory than this is a finding \[MiB\]; the address sanitiser itself needs a few hundred.
+const MEMORY: u32 = 2048;
+
+/// Builds all fuzz targets, after checking that their lock file is up to date (`cargo fuzz` has no `--locked`).
+///
+/// # Errors
+///
+/// When the lock file is stale or a target does not build.
+pub fn build(context: &mut Context) -> Result<(), String> {
+    Invocation::cargo("tree --locked --manifest-path fuzz/Cargo.toml").output(context.root())?;
+    context.run(&cargo_fuzz(context, "build"))
+}
+
+/// Runs each target that `cargo fuzz list` names for so many seconds, from the committed corpus. What the fuzzer adds stays
+/// in `target/`; what it finds lies in `fuzz/artifacts/`.
+///
+/// # Errors
+///
+/// When a target finds something; the text then names the target and the command.
+pub fn run(context: &mut Context, seconds: u32) -> Result<(), String> {
+    let listing = cargo_fuzz(context, "list").output(context.root())?;
+    let targets: Vec<&str> = listing.split_whitespace().collect();
+    if targets.is_empty() {
+        return Err("`cargo fuzz list` names no target".to_owned());
+    }
+    for target in targets {
+        let scratch = Path::new("target/fuzz-corpus").join(target);
+        std::fs::create_dir_all(context.root().join(&scratch))
+            .map_err(|error| format!("cannot make {}: {error}", scratch.display()))?;
+        let dictionary = dictionary(context.root(), target);
+        let start = Instant::now();
+        context.run(&cargo_fuzz(context, &run_arguments(target, dictionary.as_deref(), seconds)))?;
+        println!("{target}: nothing found in {:.0} s", start.elapsed().as_secs_f64());
+    }
+    Ok(())
+}
+
+fn run_arguments(target: &str, dictionary: Option<&str>, seconds: u32) -> String {
+    let dictionary = dictionary.map(|path| format!(" -dict={path}")).unwrap_or_default();
+    format!(
+        "run {target} target/fuzz-corpus/{target} fuzz/corpus/{target} -- -max_total_time={seconds} -seed=1 \
+         -max_len={LONGEST_INPUT} -timeout={SLOW_INPUT} -rss_limit_mb={MEMORY} -verbosity=0{dictionary}"
+    )
+}
+
+/// The dictionary of a target, if there is one: `fuzz/dictionaries/` has one for each format, named like the targets begin.
+fn dictionary(root: &Path, target: &str) -> Option<String> {
+    let format = target.split('_').next()?;
+    let path = format!("fuzz/dictionaries/{format}.dict");
+    root.join(&path).is_file().then_some(path)
+}
+
+fn cargo_fuzz(context: &Context, arguments: &str) -> Invocation {
+    let invocation = Invocation::cargo("fuzz")
+        .path_front(Path::new(tools::FOLDER).join("bin").as_path())
+        .arguments(arguments);
+    if nightly_is_usable(context.root()) {
+        invocation.environment("RUSTUP_TOOLCHAIN", "nightly")
+    } else {
+        invocation.environment("RUSTC_BOOTSTRAP", "1")
+    }
+}
+
+/// There is a nightly toolchain, and it is not older than the one that the rest of the suite uses.
+fn nightly_is_usable(root: &Path) -> bool {
+    let Ok(installed) = Invocation::new("rustup", "toolchain list").output(root) else { return false };
+    if !installed.lines().any(|line| line.starts_with("nightly-")) {
+        return false;
+    }
+    let rustc = Invocation::new("rustc", "-vV");
+    let default = rustc.output(root).ok().and_then(|text| release(&text));
+    let nightly =
+        rustc.environment("RUSTUP_TOOLCHAIN", "nightly").output(root).ok().and_then(|text| release(&text));
+    matches!((default, nightly), (Some(default), Some(nightly)) if nightly >= default)
+}
+
+/// Major and minor version in what `rustc -vV` prints.
+fn release(version: &str) -> Option<(u32, u32)> {
+    let release = version.lines().find_map(|line| line.strip_prefix("release: "))?;
+    let mut numbers = release.split('.').map(str::parse::<u32>);
+    Some((numbers.next()?.ok()?, numbers.next()?.ok()?))
+}

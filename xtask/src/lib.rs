@@ -1,0 +1,33 @@
+//! Commands of the workspace: runs other programs and looks at source files, and knows none of the other crates.
+//!
+//! ```text
+//! cargo xtask test --install     everything that CI runs
+//! cargo xtask tidy               file lengths, left-over markers, README and CI agree
+//! ```
+//!
+//! [`steps`] is the list of what the suite does, in order; [`runner`] runs such a list and stops at the first failure;
+//! [`tools`] finds, or with `--install` fetches, what the machine lacks; [`tidy`] looks at the sources.
+
+#![forbid(unsafe_code)]
+
+pub mod fuzz;
+pub mod invocation;
+pub mod runner;
+pub mod steps;
+pub mod tidy;
+pub mod tools;
+
+use std::path::PathBuf;
+
+/// The folder of the workspace, with the root `Cargo.toml`.
+///
+/// # Panics
+///
+/// When this crate's folder has no parent, which cannot be in a checkout.
+#[must_use]
+pub fn workspace_root() -> PathBuf {
+    // The value at run time, so that a moved checkout with its old target folder is not confused with the first one.
+    let manifest =
+        std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
+    PathBuf::from(manifest).parent().expect("xtask lies inside the workspace").to_path_buf()
+}
