@@ -11,12 +11,15 @@
 #![forbid(unsafe_code)]
 
 mod error;
+mod fill;
 mod grid;
 pub mod integrate;
 mod metrics;
+mod pyramid;
 mod reconstruct;
 
 pub use error::GridError;
+pub use fill::{FillOptions, fill};
 pub use grid::{BLOCKED_BITS, DEFAULT_MAX_VERTICES, HemisphereVectors, IrradianceGrid, VALIDITY_FREE};
 pub use metrics::{IrradianceError, relative_rmse};
 pub use reconstruct::{Reconstruction, TANGENTIAL_SHARE, reconstruct, reconstruct_signed, three_vector};
