@@ -39,12 +39,15 @@ impl Context {
     }
 }
 
+/// A function that is part of a step; the error text says what is wrong and what to do.
+pub type Check = Box<dyn Fn(&mut Context) -> Result<(), String>>;
+
 /// One thing that a step does.
 pub enum Action {
     /// Runs a program.
     Run(Invocation),
     /// Calls a function of ours; the text describes it in `--list`.
-    Call(&'static str, Box<dyn Fn(&mut Context) -> Result<(), String>>),
+    Call(&'static str, Check),
 }
 
 impl fmt::Debug for Action {
