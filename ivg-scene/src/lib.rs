@@ -5,7 +5,16 @@
 //!
 //! This crate knows no rays, no GPU, and none of the streaming formats.
 
+#![forbid(unsafe_code)]
+
+pub mod import;
+pub mod lights;
+
 mod camera;
+mod check;
+mod error;
+mod flatten;
+mod geometry;
 mod light;
 mod material;
 mod mesh;
@@ -13,7 +22,8 @@ mod plan;
 mod scene;
 
 pub use camera::Camera;
-pub use light::{Light, LightKind};
+pub use error::SceneError;
+pub use light::{Light, LightKind, spot_factor};
 pub use material::{Material, Texture, TextureFormat};
 pub use mesh::Mesh;
 pub use plan::{Cost, Effect, EffectPlan, Need, PlannedEffect};

@@ -1,3 +1,5 @@
+use std::f64::consts::PI;
+
 use glam::{DVec3, Vec3};
 
 /// A light that is not simply an emissive surface of the scene's geometry.
@@ -44,3 +46,40 @@ pub enum LightKind {
         irradiance: Vec3,
     },
 }
+
+impl Light {
+    /// Power that the light radiates \[W\], linear RGB; `None` for a directional light, whose power depends on what it
+    /// shines on.
+    ///
+    /// A spot's intensity falls off as `KHR_lights_punctual` recommends: with the square of
+    /// (cos angle - cos outer) / (cos inner - cos outer), see [`spot_factor`].
+    #[must_use]
+    pub fn power(&self) -> Option<DVec3> {
+        match self.kind {
+            LightKind::Point { intensity, .. } => Some(4.0 * PI * intensity.as_dvec3()),
+            LightKind::Spot { intensity, inner_angle, outer_angle, .. } => {
+                let (inner, outer) = (f64::from(inner_angle).cos(), f64::from(outer_angle).cos());
+                // Full inside the inner cone, and the mean of a squared ramp (one third) over the rest.
+                let solid_angle = 2.0 * PI * ((1.0 - inner) + (inner - outer).max(0.0) / 3.0);
+                Some(solid_angle * intensity.as_dvec3())
+            }
+            LightKind::Directional { .. } => None,
+        }
+    }
+}
+
+/// Share of its axial intensity that a spot radiates in a direction, in [0, 1].
+///
+/// `cos_angle` is the cosine of the angle between the direction and the axis; the angles are half angles \[rad\].
+#[must_use]
+pub fn spot_factor(cos_angle: f32, inner_angle: f32, outer_angle: f32) -> f32 {
+    let (inner, outer) = (inner_angle.cos(), outer_angle.cos());
+    if cos_angle >= inner {
+        return 1.0;
+    }
+    let ramp = ((cos_angle - outer) / (inner - outer)).clamp(0.0, 1.0);
+    ramp * ramp
+}
+
+#[cfg(test)]
+mod tests;

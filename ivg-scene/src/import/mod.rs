@@ -1,0 +1,84 @@
+//! Reading scenes: OBJ with MTL, glTF 2.0 (`.gltf`, `.glb`) and PLY, each also as `.gz` or `.zst`; and lights
+//! files, which add lights and a camera to any of them.
+//!
+//! | format | lights | camera | materials |
+//! |---|---|---|---|
+//! | OBJ + MTL | `Ke`: emitted radiance \[W/(m² sr)\] | none | `Kd` linear, `map_Kd` sRGB, `Ks Ns Tf Ni d illum` |
+//! | glTF 2.0 | emissive factor × strength as radiance \[W/(m² sr)\], punctual lights in W/sr and W/m² | perspective | base colour, metallic, roughness, transmission |
+//! | PLY | none | none | [`Material::default`](crate::Material) |
+//!
+//! glTF states punctual lights in candela and lux. They are taken 1:1 as radiometric figures (W/sr, W/m²), as
+//! is emissive strength: this project is radiometric throughout, and a luminous efficacy would be a guess.
+//!
+//! Input may be hostile: nothing here panics, allocates from a declared count alone, or reads a file outside
+//! the folder of the scene file.
+
+mod compress;
+mod folder;
+mod image;
+mod obj;
+
+use std::path::{Path, PathBuf};
+
+use crate::{Scene, SceneError, lights};
+use compress::MAX_FILE_BYTES;
+use folder::Folder;
+
+/// What may be said about an import besides the file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ImportOptions {
+    /// A lights file (TOML) whose lights, sky, camera and unit are applied to the scene.
+    pub lights: Option<PathBuf>,
+}
+
+/// Reads a scene, by the extension of its name with `.gz` or `.zst` stripped, and checks it.
+///
+/// # Errors
+///
+/// [`SceneError`] naming file and line, byte or object; an unknown extension names the known ones.
+pub fn load(path: &Path, options: &ImportOptions) -> Result<Scene, SceneError> {
+    let bytes = compress::read_file(path, MAX_FILE_BYTES)?;
+    let name = path.display().to_string();
+    let mut scene = read(&name, &bytes, &Folder::of(path))?;
+    drop(bytes);
+    if let Some(file) = &options.lights {
+        let text = compress::read_file(file, lights::MAX_BYTES)?;
+        let name = file.display().to_string();
+        let text = String::from_utf8(text).map_err(|_| SceneError::file(&name, "is not UTF-8 text"))?;
+        lights::apply(&mut scene, &name, &text)?;
+    }
+    scene.check()?;
+    Ok(scene)
+}
+
+/// Reads a scene from memory, without access to any other file: OBJ materials and glTF data must be in
+/// `bytes`. `name` decides the format by its extension and is named in errors.
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Scene, SceneError> {
+    let scene = read(name, bytes, &Folder::none())?;
+    scene.check()?;
+    Ok(scene)
+}
+
+fn read(name: &str, bytes: &[u8], folder: &Folder) -> Result<Scene, SceneError> {
+    let (plain, _) = compress::strip(name);
+    let stem = Path::new(plain).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let extension = Path::new(plain).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    let mut scene = match extension.as_deref() {
+        Some("obj") => obj::read(name, &stem, bytes, folder)?,
+        _ => {
+            return Err(SceneError::file(
+                name,
+                "has no known extension; known are .obj .gltf .glb .ply, each also with .gz or .zst",
+            ));
+        }
+    };
+    scene.name = stem;
+    Ok(scene)
+}
+
+#[cfg(test)]
+mod tests;
