@@ -35,6 +35,8 @@ pub struct IrradianceGrid {
     received: BitSet,
     validity: Vec<u8>,
     blocked_edges: Vec<u8>,
+    invalid_count: usize,
+    blocked_count: usize,
     filled: bool,
 }
 
@@ -62,6 +64,8 @@ impl IrradianceGrid {
             received: BitSet::new(count),
             validity: vec![VALIDITY_FREE; count],
             blocked_edges: vec![0; count],
+            invalid_count: 0,
+            blocked_count: 0,
             filled: false,
         })
     }
@@ -83,9 +87,19 @@ impl IrradianceGrid {
         check_length("blocked edges", blocked_edges.len(), count)?;
         let mut received = BitSet::new(count);
         (0..count).for_each(|index| received.insert(index));
-        let mut grid = Self { lattice, vectors, received, validity, blocked_edges, filled: false };
-        grid.blocked_edges.iter_mut().for_each(|bits| *bits &= BLOCKED_BITS);
-        Ok(grid)
+        let invalid_count = validity.iter().filter(|&&validity| validity == 0).count();
+        let blocked_edges: Vec<u8> = blocked_edges.into_iter().map(|bits| bits & BLOCKED_BITS).collect();
+        let blocked_count = blocked_edges.iter().map(|bits| bits.count_ones() as usize).sum();
+        Ok(Self {
+            lattice,
+            vectors,
+            received,
+            validity,
+            blocked_edges,
+            invalid_count,
+            blocked_count,
+            filled: false,
+        })
     }
 
     /// Where the vertices are.
@@ -109,13 +123,13 @@ impl IrradianceGrid {
     /// Number of vertices that light reaches.
     #[must_use]
     pub fn valid_count(&self) -> usize {
-        self.validity.iter().filter(|&&validity| validity > 0).count()
+        self.vertex_count() - self.invalid_count
     }
 
     /// Number of edges between neighbours that geometry cuts.
     #[must_use]
     pub fn blocked_edge_count(&self) -> usize {
-        self.blocked_edges.iter().map(|bits| bits.count_ones() as usize).sum()
+        self.blocked_count
     }
 
     /// Whether every vertex has a value because the grid came out of [`fill`](crate::fill()).
@@ -198,7 +212,8 @@ impl IrradianceGrid {
     ///
     /// If `index` is not less than the number of vertices.
     pub fn set_validity(&mut self, index: usize, validity: u8) {
-        self.validity[index] = validity;
+        let before = std::mem::replace(&mut self.validity[index], validity);
+        self.invalid_count = self.invalid_count + usize::from(validity == 0) - usize::from(before == 0);
     }
 
     /// Sets which edges of a vertex geometry cuts: bits 0, 1, 2 for the +x, +y, +z neighbour; other bits are dropped.
@@ -207,7 +222,9 @@ impl IrradianceGrid {
     ///
     /// If `index` is not less than the number of vertices.
     pub fn set_blocked_edges(&mut self, index: usize, bits: u8) {
-        self.blocked_edges[index] = bits & BLOCKED_BITS;
+        let bits = bits & BLOCKED_BITS;
+        let before = std::mem::replace(&mut self.blocked_edges[index], bits);
+        self.blocked_count = self.blocked_count + bits.count_ones() as usize - before.count_ones() as usize;
     }
 
     /// The largest absolute component of all vectors \[W/m²\]: what an upload at half precision scales by.
@@ -221,6 +238,13 @@ impl IrradianceGrid {
             .fold(0.0, |largest, c| largest.max(c.abs()))
     }
 
+    /// Whether every vertex has a value and is valid, and no edge is blocked: lookups need not look at any of it.
+    pub(crate) fn is_unobstructed(&self) -> bool {
+        self.invalid_count == 0
+            && self.blocked_count == 0
+            && (self.filled || self.received.count == self.vertex_count())
+    }
+
     /// The same grid with other vectors, every vertex valued.
     pub(crate) fn filled_with(&self, vectors: Vec<HemisphereVectors>) -> Self {
         debug_assert_eq!(vectors.len(), self.vertex_count());
@@ -230,6 +254,8 @@ impl IrradianceGrid {
             received: self.received.clone(),
             validity: self.validity.clone(),
             blocked_edges: self.blocked_edges.clone(),
+            invalid_count: self.invalid_count,
+            blocked_count: self.blocked_count,
             filled: true,
         }
     }

@@ -14,12 +14,18 @@ mod error;
 mod fill;
 mod grid;
 pub mod integrate;
+mod lookup;
 mod metrics;
 mod pyramid;
 mod reconstruct;
+pub mod spatial;
+mod texture;
 
 pub use error::GridError;
 pub use fill::{FillOptions, fill};
 pub use grid::{BLOCKED_BITS, DEFAULT_MAX_VERTICES, HemisphereVectors, IrradianceGrid, VALIDITY_FREE};
+pub use lookup::SURFACE_BIAS;
 pub use metrics::{IrradianceError, relative_rmse};
 pub use reconstruct::{Reconstruction, TANGENTIAL_SHARE, reconstruct, reconstruct_signed, three_vector};
+pub use spatial::SpatialFilter;
+pub use texture::{FLAG_USABLE, INVALID_TEXTURE_WEIGHT, TEXTURE_COUNT};

@@ -65,3 +65,29 @@ fn the_largest_component_looks_at_signs_and_every_place() {
     grid.set(1, &vectors);
     assert_eq!(grid.largest_component(), 7.5);
 }
+
+#[test]
+fn counts_follow_every_change() {
+    let mut grid = IrradianceGrid::new(lattice([3, 2, 2])).expect("small");
+    assert!(!grid.is_unobstructed(), "nothing has arrived");
+    (0..12).for_each(|index| grid.set(index, &[[[1.0; 3]; 3]; 6]));
+    assert!(grid.is_unobstructed());
+    for (validity, valid) in [(0, 11), (0, 11), (1, 12), (255, 12), (0, 11)] {
+        grid.set_validity(4, validity);
+        assert_eq!(grid.valid_count(), valid);
+        assert_eq!(grid.is_unobstructed(), valid == 12);
+    }
+    grid.set_validity(4, 255);
+    for (bits, blocked) in [(0b111, 3), (0b101, 2), (0b1111_1000, 0), (0b010, 1)] {
+        grid.set_blocked_edges(9, bits);
+        assert_eq!(grid.blocked_edge_count(), blocked);
+        assert_eq!(grid.is_unobstructed(), blocked == 0);
+    }
+    let parts = IrradianceGrid::from_parts(
+        *grid.lattice(),
+        grid.vectors().to_vec(),
+        grid.validity().to_vec(),
+        grid.blocked_edges().to_vec(),
+    );
+    assert_eq!(parts.as_ref(), Ok(&grid), "the counts belong to what is compared");
+}

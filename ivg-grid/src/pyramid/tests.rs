@@ -116,7 +116,7 @@ fn the_number_of_nodes_is_bounded() {
     let mut grid = open_grid([16; 3]);
     for index in 0..grid.vertex_count() {
         let at = grid.lattice().coords(index as u64);
-        grid.set_blocked_edges(index, (0..3).map(|axis| u8::from(at[axis] % 2 == 0) << axis).sum());
+        grid.set_blocked_edges(index, (0..3).map(|axis| u8::from(at[axis].is_multiple_of(2)) << axis).sum());
     }
     let nodes: usize = Pyramid::of_grid(&grid).levels.iter().map(Level::len).sum();
     assert!(nodes > 2 * 4096 && nodes < 6 * 4096, "{nodes}");
