@@ -1,7 +1,9 @@
 //! Serving and fetching scene directories: HTTP ranges, scheduling, resuming.
 #![forbid(unsafe_code)]
 
+mod client;
 mod digest;
+mod extensions;
 mod http;
 mod server;
 

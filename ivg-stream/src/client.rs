@@ -1,0 +1,6 @@
+//! The streaming client.
+
+mod download;
+mod schedule;
+mod transport;
+mod url;
