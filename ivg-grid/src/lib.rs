@@ -10,6 +10,8 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(any(test, feature = "cases"))]
+pub mod cases;
 mod error;
 mod fill;
 mod grid;
