@@ -2,7 +2,6 @@
 
 /// The largest values that the formats allow; anything beyond is invalid (COM-LIM-02).
 #[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
 pub struct Maximum;
 
 impl Maximum {
@@ -21,7 +20,6 @@ impl Maximum {
 ///
 /// The defaults are the column "our default" of the specification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Limits {
     /// Bytes of the header.
     pub header_bytes: u32,

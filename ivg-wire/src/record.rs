@@ -121,6 +121,13 @@ pub fn read_end(
     }
 }
 
+/// Makes the checksum of a whole chunk or record anew: the last four bytes, over all before them (COM-CRC-02).
+pub fn seal(envelope: &mut [u8], content: ContentId) {
+    if let Some((body, crc)) = envelope.split_last_chunk_mut::<4>() {
+        *crc = content.crc32(body).to_le_bytes();
+    }
+}
+
 /// Appends a record to `out`.
 pub fn write_record(out: &mut Vec<u8>, id: u32, generation: u32, payload: &[u8], content: ContentId) {
     let start = out.len();
