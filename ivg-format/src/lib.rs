@@ -1,9 +1,74 @@
 //! The .ivg format: irradiance vector grids as bundles that can be streamed in any order.
+//!
+//! An irradiance vector grid stores, at each vertex of a regular lattice, the indirect light that arrives from
+//! the six hemispheres around the coordinate axes. Authority: `spec/common.md` and `spec/ivg.md`, which define
+//! every byte, every rounding and every error; clause ids such as `IVG-DIR-03` are theirs.
+//!
+//! ```text
+//! header 144 ─ chunks: LITE, META ─ corners ─ validity blocks (optional) ─ bundle 1 … bundle B ─ end 20
+//! ```
+//!
+//! A file of 32³ vertices in `packed-oct24` (42 bytes a vertex) takes 1.4 MB; with 64 vertices per slice it
+//! comes in 16 bundles of 86 KB, each of which can be fetched and verified alone, and each of which is spread
+//! over the whole volume.
+//!
+//! ```
+//! use ivg_format::{EncodeOptions, Event, GridSource, Lattice, Limits, decode_all, encode};
+//!
+//! let lattice = Lattice::new([4, 3, 2], [0.0; 3], [3.0, 2.0, 1.0])?;
+//! // Light from above: the +y hemisphere of every vertex holds a vector along +y.
+//! let mut vertex = [[[0.0; 3]; 3]; 6];
+//! vertex[2] = [[0.0, 1.5, 0.0]; 3];
+//! let vectors = vec![vertex; 24];
+//! let file = encode(&GridSource::new(lattice, &vectors), &EncodeOptions::default())?;
+//!
+//! let mut received = 0;
+//! decode_all(&file, &Limits::default(), |event| {
+//!     if let Event::Corners(bundle) | Event::Bundle(bundle) = event {
+//!         for (_vertex, vectors) in bundle.iter() {
+//!             assert_eq!(vectors[2][0], [0.0, 1.5, 0.0]);
+//!             received += 1;
+//!         }
+//!     }
+//! })?;
+//! assert_eq!(received, 24);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Guarantees: reading never panics, whatever the bytes; [`Decoder`] allocates nothing, [`BufferedDecoder`]
+//! nothing but the bytes of the record it waits for; any split of the bytes gives the same events and the same
+//! error. [`decode_record`] reads one record by its range, [`Header::record_range`] says where it lies.
+//!
+//! Features: `std` (default) is only passed on to dependencies; it never changes bytes or results.
 #![no_std]
 #![forbid(unsafe_code)]
 
 extern crate alloc;
 
+mod bundle;
+mod code;
+mod decode;
+mod encode;
+mod encoding;
+mod header;
 mod lattice;
+mod limits;
+mod metadata;
+mod order;
+pub mod quant;
+mod validity;
+mod wire;
 
+pub use bundle::{Bundle, HemisphereVectors, Vertices};
+pub use code::codes;
+pub use decode::{BufferedDecoder, Decoder, Event, decode_all, decode_record};
+pub use encode::{EncodeError, EncodeOptions, GridSource, encode};
+pub use encoding::{Encoding, Order, Units};
+pub use header::{Header, RecordId, VALIDITY_BLOCK};
+pub use ivg_wire::{Error, Step, Verdict};
 pub use lattice::{Lattice, LatticeError};
+pub use limits::Limits;
+pub use metadata::{BakedLight, LIGHTS, METADATA, lights, metadata};
+pub use order::BundleVertices;
+pub use validity::ValidityBlock;
+pub use wire::HEADER_BYTES;

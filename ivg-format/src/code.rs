@@ -1,0 +1,50 @@
+//! The error codes of this format; those that all formats share are in [`ivg_wire::codes`].
+//! Source: `spec/tables/errors.toml`; a test compares every constant with its row.
+
+/// Error codes of the .ivg format.
+pub mod codes {
+    ivg_wire::error_codes! {
+        /// An axis has no vertex.
+        DIMENSIONS = 301, Invalid, "IVG-LAT-01", "an axis of the lattice has no vertex";
+        /// The origin, or the position of the last vertex, is not finite.
+        ORIGIN = 302, Invalid, "IVG-LAT-02", "a vertex of the lattice has no finite position";
+        /// The step does not fit the number of vertices.
+        STEP = 303, Invalid, "IVG-LAT-03", "the step does not fit the number of vertices along its axis";
+        /// The scale exponent is out of range.
+        SCALE_EXPONENT = 304, Invalid, "IVG-HDR-04", "the scale exponent is not in -125 to 112";
+        /// The number of vertices per slice is 0.
+        SLICE_VERTICES = 305, Invalid, "IVG-ORD-03", "a bundle takes no vertex from a slice";
+        /// The number of bundles does not follow from the lattice.
+        BUNDLE_COUNT = 306, Invalid, "IVG-ORD-04",
+            "the number of bundles is not the one that follows from the lattice";
+        /// The number of validity records does not follow from the lattice.
+        VALIDITY_COUNT = 307, Invalid, "IVG-VAL-01",
+            "the number of validity records is neither 0 nor the one that follows from the lattice";
+        /// A bundle would be longer than a record may be.
+        RECORD_TOO_LARGE = 308, Invalid, "IVG-HDR-06", "a bundle would be longer than a record may be";
+        /// The forbidden encoding 0.
+        ENCODING_FORBIDDEN = 401, Invalid, "IVG-ENC-01", "encoding 0 does not exist";
+        /// An encoding that this reader does not have.
+        ENCODING_UNKNOWN = 402, Unsupported, "IVG-ENC-02", "this encoding needs another reader";
+        /// The forbidden order 0.
+        ORDER_FORBIDDEN = 403, Invalid, "IVG-ORD-05", "order 0 does not exist";
+        /// An order that this reader does not have.
+        ORDER_UNKNOWN = 404, Unsupported, "IVG-ORD-06", "this order of vertices needs another reader";
+        /// Units that this reader does not know.
+        UNITS_UNKNOWN = 405, Unsupported, "IVG-HDR-05", "these units need a newer reader";
+        /// A direction code with a forbidden half.
+        DIRECTION_CODE = 406, Invalid, "IVG-DIR-02", "a direction code holds the forbidden value 4095";
+        /// A stored number that is NaN or infinite, or becomes so when scaled.
+        NOT_FINITE = 407, Invalid, "IVG-VEC-02", "an irradiance vector is not finite";
+        /// Unused bits after the blocked edges are not zero.
+        UNUSED_BITS = 408, Invalid, "IVG-VAL-04", "unused bits after the blocked edges are not zero";
+        /// A blocked edge that would leave the lattice.
+        EDGE_OUTSIDE = 409, Invalid, "IVG-VAL-05", "a blocked edge leads out of the lattice";
+        /// The list of lights cannot be read.
+        LIGHTS = 410, Invalid, "IVG-LITE-02", "the list of lights is not well formed";
+        /// The metadata cannot be read.
+        METADATA = 411, Invalid, "IVG-META-02", "the metadata are not lines of key=value in UTF-8";
+        /// The lattice has more vertices than the caller allows.
+        LIMIT_VERTICES = 605, Limit, "IVG-LIM-01", "the lattice has more vertices than the limit";
+    }
+}

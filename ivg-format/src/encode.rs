@@ -1,0 +1,411 @@
+//! Writing: a dense grid becomes a file. Deterministic: the same source and options give the same bytes.
+
+use crate::bundle::HemisphereVectors;
+use crate::encoding::{Encoding, Order, Units};
+use crate::header::{Header, RecordId, SCALE_EXPONENTS, VALIDITY_BLOCK};
+use crate::lattice::{Lattice, LatticeError};
+use crate::metadata::{self, BakedLight, LIGHTS, METADATA};
+use crate::quant::pack::{PackedHemisphere, pack_hemisphere};
+use crate::quant::{floor_log2, power_of_two_f64, rgb9e5};
+use crate::validity;
+use crate::wire::{FORMAT, HEADER_BYTES};
+use alloc::vec::Vec;
+use core::fmt;
+use ivg_wire::{ContentId, Maximum, record_len, seal, write_chunk, write_end, write_record};
+
+/// What to write: one grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridSource<'a> {
+    /// Where the vertices are.
+    pub lattice: Lattice,
+    /// Irradiance vectors of every vertex in the order of its linear index \[W/m², or lux\].
+    pub vectors: &'a [HemisphereVectors],
+    /// Validity of every vertex: 0 inside geometry … 255 all free. `None` counts as all free.
+    pub validity: Option<&'a [u8]>,
+    /// Blocked edges of every vertex: bit 0, 1, 2 set where geometry cuts the way to the neighbour in
+    /// +x, +y, +z. `None` counts as none blocked. Without either, the file has no validity section.
+    pub blocked_edges: Option<&'a [u8]>,
+    /// The lights whose light is in the grid.
+    pub lights: &'a [BakedLight<'a>],
+    /// Free key–value pairs: keys of lower-case letters, digits, `-` and `_`, values of one line.
+    pub meta: &'a [(&'a str, &'a str)],
+}
+
+impl<'a> GridSource<'a> {
+    /// A grid without validity section, lights and metadata.
+    #[must_use]
+    pub const fn new(lattice: Lattice, vectors: &'a [HemisphereVectors]) -> Self {
+        Self { lattice, vectors, validity: None, blocked_edges: None, lights: &[], meta: &[] }
+    }
+}
+
+/// How to write it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EncodeOptions {
+    /// How irradiance vectors are stored.
+    pub encoding: Encoding,
+    /// In which order bundles take the vertices.
+    pub order: Order,
+    /// Vertices that a bundle takes from each slice across the longest axis; at least 1.
+    pub vertices_per_slice: u32,
+    /// Seed of the permutations in the slices.
+    pub seed: u64,
+    /// What the numbers measure.
+    pub units: Units,
+}
+
+impl EncodeOptions {
+    /// The defaults: `packed-oct24`, 64 vertices per slice, seed 0, W/m².
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            encoding: Encoding::PackedOct24,
+            order: Order::Slices,
+            vertices_per_slice: 64,
+            seed: 0,
+            units: Units::Radiometric,
+        }
+    }
+}
+
+impl Default for EncodeOptions {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Why a grid cannot be written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum EncodeError {
+    /// The lattice is none.
+    Lattice(LatticeError),
+    /// An array does not have one entry per vertex.
+    Count {
+        /// Which array.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The lattice's vertices.
+        expected: u64,
+    },
+    /// A component of an irradiance vector is NaN or infinite.
+    NotFinite {
+        /// The vertex's coordinates.
+        vertex: [u16; 3],
+        /// The hemisphere, 0 to 5 for +x −x +y −y +z −z.
+        hemisphere: u8,
+    },
+    /// An irradiance vector is too large for the encoding, whatever the scale exponent.
+    TooLarge {
+        /// The vertex's coordinates.
+        vertex: [u16; 3],
+        /// The hemisphere, 0 to 5 for +x −x +y −y +z −z.
+        hemisphere: u8,
+    },
+    /// A bundle takes no vertex from a slice.
+    NoVerticesPerSlice,
+    /// A bundle would be longer than a record may be, or there would be too many bundles.
+    BundleSize,
+    /// A blocked edge leads out of the lattice.
+    EdgeOutside {
+        /// The vertex's coordinates.
+        vertex: [u16; 3],
+    },
+    /// A light's name is longer than 65,535 bytes.
+    LightName {
+        /// Which light, counted from 0.
+        light: usize,
+    },
+    /// A key is empty or has other characters than lower-case letters, digits, `-` and `_`, or a value has a
+    /// line feed.
+    Metadata {
+        /// Which pair, counted from 0.
+        pair: usize,
+    },
+    /// Lights or metadata are longer than a chunk may be.
+    ChunkSize,
+}
+
+/// Writes a grid as a file.
+///
+/// # Errors
+///
+/// [`EncodeError`] names what cannot be written and where.
+pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8>, EncodeError> {
+    check_source(source)?;
+    let packed = match options.encoding {
+        Encoding::PackedOct24 => Some(pack(source)?),
+        Encoding::VectorsF32 => None,
+    };
+    let mut chunks = Vec::new();
+    write_chunks(&mut chunks, source)?;
+    let header = layout(source, options, packed.as_ref().map_or(0, |p| p.scale_exponent), chunks.len())?;
+
+    let mut out =
+        Vec::with_capacity(usize::try_from(header.file_bytes).map_err(|_| EncodeError::BundleSize)?);
+    out.extend_from_slice(&header.to_bytes());
+    out.extend_from_slice(&chunks);
+    let mut payload = Vec::new();
+    for id in header.records() {
+        payload.clear();
+        match id {
+            RecordId::Corners => {
+                write_vertices(&mut payload, source, packed.as_ref(), header.lattice.corners())
+            }
+            RecordId::Bundle(k) => {
+                write_vertices(&mut payload, source, packed.as_ref(), header.bundle_vertices(k));
+            }
+            RecordId::Validity(j) => {
+                let first = (u64::from(j) * VALIDITY_BLOCK) as usize;
+                let range = first..first + header.record_vertices(id) as usize;
+                validity::write(&mut payload, range, source.validity, source.blocked_edges);
+            }
+            RecordId::End => {
+                write_end(&mut out, header.file_bytes, ContentId::default());
+                continue;
+            }
+        }
+        write_record(&mut out, id.stored(), 0, &payload, ContentId::default());
+    }
+    seal_all(&mut out, header);
+    Ok(out)
+}
+
+/// Derives the content id from the bytes written so far and makes every checksum anew with it.
+fn seal_all(out: &mut [u8], header: Header) {
+    let header = Header { content_id: ContentId::of(&[&*out]), ..header };
+    out[..HEADER_BYTES].copy_from_slice(&header.to_bytes());
+    let mut start = HEADER_BYTES;
+    while (start as u64) < header.data_offset {
+        let mut length = [0; 8];
+        length.copy_from_slice(&out[start + 8..start + 16]);
+        let end = start + ivg_wire::chunk_len(u64::from_le_bytes(length)).unwrap_or(u64::MAX) as usize;
+        seal(&mut out[start..end], header.content_id);
+        start = end;
+    }
+    for id in header.records() {
+        let range = header.record_range(id);
+        seal(&mut out[range.start as usize..range.end as usize], header.content_id);
+    }
+}
+
+fn check_source(source: &GridSource<'_>) -> Result<(), EncodeError> {
+    let lattice = &source.lattice;
+    lattice.check().map_err(EncodeError::Lattice)?;
+    let expected = lattice.vertex_count();
+    let counts = [
+        ("vectors", Some(source.vectors.len())),
+        ("validity", source.validity.map(<[u8]>::len)),
+        ("blocked_edges", source.blocked_edges.map(<[u8]>::len)),
+    ];
+    for (what, found) in counts {
+        if let Some(found) = found.filter(|&found| found as u64 != expected) {
+            return Err(EncodeError::Count { what, found, expected });
+        }
+    }
+    for (index, vectors) in (0..).zip(source.vectors) {
+        let hemisphere = vectors.iter().position(|v| !v.iter().flatten().all(|c| c.is_finite()));
+        if let Some(hemisphere) = hemisphere {
+            return Err(EncodeError::NotFinite {
+                vertex: lattice.coords(index),
+                hemisphere: hemisphere as u8,
+            });
+        }
+    }
+    for (index, &edges) in (0..).zip(source.blocked_edges.unwrap_or(&[])) {
+        let vertex = lattice.coords(index);
+        let outward = (0..3).any(|axis| edges >> axis & 1 != 0 && vertex[axis] + 1 == lattice.dims[axis]);
+        if outward || edges > 7 {
+            return Err(EncodeError::EdgeOutside { vertex });
+        }
+    }
+    if let Some(light) = source.lights.iter().position(|l| l.name.len() > usize::from(u16::MAX)) {
+        return Err(EncodeError::LightName { light });
+    }
+    match source.meta.iter().position(|(key, value)| !metadata::is_pair(key, value)) {
+        Some(pair) => Err(EncodeError::Metadata { pair }),
+        None => Ok(()),
+    }
+}
+
+fn write_chunks(out: &mut Vec<u8>, source: &GridSource<'_>) -> Result<(), EncodeError> {
+    let mut chunk = |kind, payload: &[u8]| {
+        let length = ivg_wire::chunk_len(payload.len() as u64).unwrap_or(u64::MAX);
+        if length > u64::from(Maximum::CHUNK_BYTES) {
+            return Err(EncodeError::ChunkSize);
+        }
+        write_chunk(out, kind, false, payload, ContentId::default());
+        Ok(())
+    };
+    if !source.lights.is_empty() {
+        chunk(LIGHTS, &metadata::write_lights(source.lights))?;
+    }
+    if !source.meta.is_empty() {
+        chunk(METADATA, &metadata::write_metadata(source.meta))?;
+    }
+    Ok(())
+}
+
+/// The header of the file, with its content id still 0.
+fn layout(
+    source: &GridSource<'_>,
+    options: &EncodeOptions,
+    scale_exponent: i16,
+    chunk_bytes: usize,
+) -> Result<Header, EncodeError> {
+    if options.vertices_per_slice == 0 {
+        return Err(EncodeError::NoVerticesPerSlice);
+    }
+    let has_validity = source.validity.is_some() || source.blocked_edges.is_some();
+    let blocks = if has_validity { source.lattice.vertex_count().div_ceil(VALIDITY_BLOCK) } else { 0 };
+    let mut header = Header {
+        minor: FORMAT.minor,
+        optional_features: 0,
+        header_bytes: FORMAT.header_bytes,
+        content_id: ContentId::default(),
+        data_offset: (HEADER_BYTES + chunk_bytes) as u64,
+        file_bytes: 0,
+        lattice: source.lattice,
+        encoding: options.encoding,
+        order: options.order,
+        scale_exponent,
+        vertices_per_slice: options.vertices_per_slice,
+        seed: options.seed,
+        bundle_count: 0,
+        validity_records: u32::try_from(blocks).map_err(|_| EncodeError::BundleSize)?,
+        units: options.units,
+    };
+    header.bundle_count =
+        u32::try_from(header.slices().bundle_count()).map_err(|_| EncodeError::BundleSize)?;
+    let largest = record_len(header.payload_len(RecordId::Bundle(1))).unwrap_or(u64::MAX);
+    if header.bundle_count > i32::MAX as u32 || largest > u64::from(Maximum::RECORD_BYTES) {
+        return Err(EncodeError::BundleSize);
+    }
+    header.file_bytes = header.implied_file_bytes().ok_or(EncodeError::BundleSize)?;
+    Ok(header)
+}
+
+/// Directions and colours of all vertices, and the exponent that brings the largest colour just below the
+/// largest number of RGB9E5.
+struct Packed {
+    hemispheres: Vec<[PackedHemisphere; 6]>,
+    scale_exponent: i16,
+}
+
+fn pack(source: &GridSource<'_>) -> Result<Packed, EncodeError> {
+    let lattice = &source.lattice;
+    let mut hemispheres = Vec::with_capacity(source.vectors.len());
+    let mut largest = 0.0f64;
+    let bound = f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(*SCALE_EXPONENTS.end()));
+    for (index, vectors) in (0..).zip(source.vectors) {
+        let mut vertex = [PackedHemisphere { direction: 0, colour: [0.0; 3] }; 6];
+        for (hemisphere, (packed, vectors)) in vertex.iter_mut().zip(vectors).enumerate() {
+            let at = || (lattice.coords(index), hemisphere as u8);
+            let Some(found) = pack_hemisphere(vectors, hemisphere) else {
+                let (vertex, hemisphere) = at();
+                return Err(EncodeError::NotFinite { vertex, hemisphere });
+            };
+            let most = found.colour.iter().fold(0.0, |most: f64, &c| most.max(c));
+            if most > bound {
+                let (vertex, hemisphere) = at();
+                return Err(EncodeError::TooLarge { vertex, hemisphere });
+            }
+            largest = largest.max(most);
+            *packed = found;
+        }
+        hemispheres.push(vertex);
+    }
+    Ok(Packed { hemispheres, scale_exponent: scale_exponent(largest) })
+}
+
+/// The smallest exponent e in range with `largest / 2^e` ≤ 65408; 0 for a grid without light (IVG-PACK-06).
+fn scale_exponent(largest: f64) -> i16 {
+    if largest <= 0.0 {
+        return 0;
+    }
+    let (low, high) = (i32::from(*SCALE_EXPONENTS.start()), i32::from(*SCALE_EXPONENTS.end()));
+    // 65408 is a little below 2^16, so the exponent is this one or the next.
+    let mut exponent = (floor_log2(largest) - 15).clamp(low, high);
+    if largest > f64::from(rgb9e5::LARGEST) * power_of_two_f64(exponent) {
+        exponent += 1;
+    }
+    exponent.min(high) as i16
+}
+
+fn write_vertices(
+    out: &mut Vec<u8>,
+    source: &GridSource<'_>,
+    packed: Option<&Packed>,
+    vertices: impl Iterator<Item = u64> + Clone,
+) {
+    match packed {
+        Some(Packed { hemispheres, scale_exponent }) => {
+            let scale = power_of_two_f64(-i32::from(*scale_exponent));
+            for h in vertices.clone().flat_map(|v| &hemispheres[v as usize]) {
+                out.extend_from_slice(&rgb9e5::encode_f64(h.colour.map(|c| c * scale)).to_le_bytes());
+            }
+            for h in vertices.flat_map(|v| &hemispheres[v as usize]) {
+                out.extend_from_slice(&h.direction.to_le_bytes()[..3]);
+            }
+        }
+        None => {
+            for component in vertices.flat_map(|v| source.vectors[v as usize].iter().flatten().flatten()) {
+                out.extend_from_slice(&component.to_le_bytes());
+            }
+        }
+    }
+}
+
+impl fmt::Display for EncodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let hemisphere_name =
+            |h: u8| ["+x", "-x", "+y", "-y", "+z", "-z"].get(usize::from(h)).copied().unwrap_or("?");
+        match *self {
+            Self::Lattice(error) => error.fmt(f),
+            Self::Count { what, found, expected } => {
+                write!(f, "{what} has {found} entries, but the lattice has {expected} vertices")
+            }
+            Self::NotFinite { vertex: [i, j, k], hemisphere } => write!(
+                f,
+                "vertex ({i}, {j}, {k}) has an irradiance vector of hemisphere {} that is not finite",
+                hemisphere_name(hemisphere)
+            ),
+            Self::TooLarge { vertex: [i, j, k], hemisphere } => write!(
+                f,
+                "vertex ({i}, {j}, {k}) has an irradiance vector of hemisphere {} that is too large for a \
+                 packed encoding; use vectors-f32",
+                hemisphere_name(hemisphere)
+            ),
+            Self::NoVerticesPerSlice => {
+                f.write_str("a bundle takes no vertex from a slice; give at least 1 vertex per slice")
+            }
+            Self::BundleSize => f.write_str(
+                "bundles would be too large, or too many, for the format; choose another number of vertices \
+                 per slice",
+            ),
+            Self::EdgeOutside { vertex: [i, j, k] } => {
+                write!(f, "vertex ({i}, {j}, {k}) has a blocked edge that leads out of the lattice")
+            }
+            Self::LightName { light } => write!(f, "the name of light {light} is longer than 65,535 bytes"),
+            Self::Metadata { pair } => write!(
+                f,
+                "metadata pair {pair} does not fit: keys are lower-case letters, digits, - and _, values one \
+                 line"
+            ),
+            Self::ChunkSize => f.write_str("lights or metadata are longer than a chunk may be"),
+        }
+    }
+}
+
+impl core::error::Error for EncodeError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Lattice(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

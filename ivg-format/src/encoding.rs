@@ -1,0 +1,134 @@
+//! The registries of encodings, orders and units. Source: `spec/tables/registry.toml`.
+
+/// How the irradiance vectors of a vertex are stored: the registry entries that this crate has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Encoding {
+    /// A direction of 24 bits in the octahedral map and a colour in RGB9E5 for each hemisphere: 42 bytes.
+    #[default]
+    PackedOct24,
+    /// 54 binary32 numbers `[hemisphere 6][rgb 3][xyz 3]`: 216 bytes, exact.
+    VectorsF32,
+}
+
+impl Encoding {
+    /// Every encoding that this crate has, in the order of their ids.
+    pub const ALL: &'static [Self] = &[Self::PackedOct24, Self::VectorsF32];
+
+    /// The number in the registry, as stored in the header.
+    #[must_use]
+    pub const fn id(self) -> u16 {
+        match self {
+            Self::PackedOct24 => 1,
+            Self::VectorsF32 => 6,
+        }
+    }
+
+    /// The encoding with this registry number, if this crate has it.
+    #[must_use]
+    pub fn from_id(id: u16) -> Option<Self> {
+        Self::ALL.iter().copied().find(|encoding| encoding.id() == id)
+    }
+
+    /// The name in the registry, as users write it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::PackedOct24 => "packed-oct24",
+            Self::VectorsF32 => "vectors-f32",
+        }
+    }
+
+    /// The encoding with this registry name, if this crate has it.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|encoding| encoding.name() == name)
+    }
+
+    /// Stored bytes of one vertex.
+    #[must_use]
+    pub const fn bytes_per_vertex(self) -> u64 {
+        match self {
+            Self::PackedOct24 => 42,
+            Self::VectorsF32 => 216,
+        }
+    }
+}
+
+/// What the numbers of the grid measure. glTF's light intensities are carried 1:1; nothing is ever multiplied
+/// by 683 (IVG-HDR-05).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Units {
+    /// Irradiance vectors in W/m².
+    #[default]
+    Radiometric,
+    /// Irradiance vectors in lux.
+    Photometric,
+}
+
+impl Units {
+    /// The number in the registry, as stored in the header.
+    #[must_use]
+    pub const fn id(self) -> u8 {
+        match self {
+            Self::Radiometric => 0,
+            Self::Photometric => 1,
+        }
+    }
+
+    /// The units with this registry number.
+    #[must_use]
+    pub const fn from_id(id: u8) -> Option<Self> {
+        match id {
+            0 => Some(Self::Radiometric),
+            1 => Some(Self::Photometric),
+            _ => None,
+        }
+    }
+
+    /// The name in the registry.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Radiometric => "radiometric",
+            Self::Photometric => "photometric",
+        }
+    }
+}
+
+/// In which order bundles take the vertices: the registry entries that this crate has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Order {
+    /// Some vertices of every slice across the longest axis, each slice in its own permutation (IVG-ORD-07).
+    #[default]
+    Slices,
+}
+
+impl Order {
+    /// The number in the registry, as stored in the header.
+    #[must_use]
+    pub const fn id(self) -> u16 {
+        match self {
+            Self::Slices => 1,
+        }
+    }
+
+    /// The order with this registry number, if this crate has it.
+    #[must_use]
+    pub const fn from_id(id: u16) -> Option<Self> {
+        match id {
+            1 => Some(Self::Slices),
+            _ => None,
+        }
+    }
+
+    /// The name in the registry.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Slices => "slices",
+        }
+    }
+}

@@ -1,0 +1,366 @@
+//! The header: what a file holds and where each record lies, without reading anything else of it.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::arithmetic_side_effects))]
+
+use crate::code::codes;
+use crate::encoding::{Encoding, Order, Units};
+use crate::lattice::{Lattice, LatticeError};
+use crate::limits::Limits;
+use crate::order::{BundleVertices, Slices};
+use crate::wire::{FORMAT, HEADER_BYTES, Specific, at};
+use core::ops::Range;
+use ivg_wire::{
+    ByteOffset, COMMON_HEADER_BYTES, Code, CommonHeader, ContentId, END_PAYLOAD, END_RECORD, Error, Maximum,
+    Part, Step, record_len, seal_header,
+};
+use zerocopy::{FromBytes, IntoBytes};
+
+/// Vertices of a validity record; the last one may have fewer (IVG-VAL-02).
+pub const VALIDITY_BLOCK: u64 = 4096;
+
+/// Id of the first validity record; bundles have the ids below it (IVG-REC-01).
+const FIRST_VALIDITY: u32 = 0x8000_0000;
+
+/// A record of an .ivg file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum RecordId {
+    /// The corner vertices of the lattice.
+    Corners,
+    /// Block `j`, counted from 0, of the validity section.
+    Validity(u32),
+    /// Bundle `k`, counted from 1.
+    Bundle(u32),
+    /// The end record.
+    End,
+}
+
+impl RecordId {
+    /// The id as it is stored (IVG-REC-01).
+    #[must_use]
+    pub const fn stored(self) -> u32 {
+        match self {
+            Self::Corners => 0,
+            Self::Validity(j) => FIRST_VALIDITY.saturating_add(j),
+            Self::Bundle(k) => k,
+            Self::End => END_RECORD,
+        }
+    }
+}
+
+/// A header that has been read and checked, or that an encoder is about to write.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Header {
+    /// Minor version of the file.
+    pub minor: u16,
+    /// Feature bits that a reader may ignore.
+    pub optional_features: u32,
+    /// Length of the header in bytes; chunks begin there.
+    pub header_bytes: u32,
+    /// Differs whenever anything encoded differs; seeds every checksum but the header's.
+    pub content_id: ContentId,
+    /// Where the records begin. Whoever fetches by ranges asks for this many bytes first.
+    pub data_offset: u64,
+    /// Length of the whole file in bytes.
+    pub file_bytes: u64,
+    /// Where the vertices are.
+    pub lattice: Lattice,
+    /// How the irradiance vectors of a vertex are stored.
+    pub encoding: Encoding,
+    /// In which order bundles take the vertices.
+    pub order: Order,
+    /// Stored values are multiplied by 2 to this power; −125 to 112 (IVG-HDR-04).
+    pub scale_exponent: i16,
+    /// Vertices that a bundle takes from each slice; at least 1.
+    pub vertices_per_slice: u32,
+    /// Seed of the permutations in the slices.
+    pub seed: u64,
+    /// Number of bundles.
+    pub bundle_count: u32,
+    /// Number of validity records; 0 where the file has no validity section.
+    pub validity_records: u32,
+    /// What the numbers measure.
+    pub units: Units,
+}
+
+impl Header {
+    /// Reads and checks the header that begins `input`.
+    ///
+    /// # Errors
+    ///
+    /// The common part first, see [`CommonHeader::read`]; then the fields in the order in which they are
+    /// stored; then the limits; then the file's length. Each at the offset of its field.
+    pub fn read(input: &[u8], limits: &Limits) -> Result<Step<Self>, Error> {
+        match CommonHeader::read(input, &FORMAT, &limits.wire)? {
+            Step::NeedMore(more) => Ok(Step::NeedMore(more)),
+            Step::Consumed(length, common) => {
+                let specific = input.get(COMMON_HEADER_BYTES..length).unwrap_or(&[]);
+                let Ok((specific, _)) = Specific::ref_from_prefix(specific) else {
+                    return Err(fail(ivg_wire::codes::HEADER_BYTES, 20));
+                };
+                Self::check(&common, specific, limits).map(|header| Step::Consumed(length, header))
+            }
+        }
+    }
+
+    fn check(common: &CommonHeader, wire: &Specific, limits: &Limits) -> Result<Self, Error> {
+        let lattice = Lattice {
+            dims: wire.dims.map(|n| n.get()),
+            origin: wire.origin.map(|x| x.get()),
+            step: wire.step.map(|x| x.get()),
+        };
+        lattice.check().map_err(lattice_error)?;
+        let encoding = match wire.encoding.get() {
+            0 => return Err(fail(codes::ENCODING_FORBIDDEN, at::ENCODING)),
+            id => Encoding::from_id(id).ok_or(fail(codes::ENCODING_UNKNOWN, at::ENCODING))?,
+        };
+        let order = match wire.order.get() {
+            0 => return Err(fail(codes::ORDER_FORBIDDEN, at::ORDER)),
+            id => Order::from_id(id).ok_or(fail(codes::ORDER_UNKNOWN, at::ORDER))?,
+        };
+        let scale_exponent = wire.scale_exponent.get();
+        if !SCALE_EXPONENTS.contains(&scale_exponent) {
+            return Err(fail(codes::SCALE_EXPONENT, at::SCALE_EXPONENT));
+        }
+        let header = Self {
+            minor: common.minor,
+            optional_features: common.optional_features,
+            header_bytes: common.header_bytes,
+            content_id: common.content_id,
+            data_offset: common.data_offset,
+            file_bytes: common.file_bytes,
+            lattice,
+            encoding,
+            order,
+            scale_exponent,
+            vertices_per_slice: wire.vertices_per_slice.get(),
+            seed: wire.seed.get(),
+            bundle_count: wire.bundle_count.get(),
+            validity_records: wire.validity_records.get(),
+            units: Units::from_id(wire.units).ok_or(fail(codes::UNITS_UNKNOWN, at::UNITS))?,
+        };
+        header.check_layout(limits)?;
+        if wire.reserved != [0; 7] {
+            return Err(fail(ivg_wire::codes::RESERVED, at::RESERVED));
+        }
+        common.expect_file_bytes(header.implied_file_bytes())?;
+        Ok(header)
+    }
+
+    /// Checks counts and sizes against the lattice and the limits.
+    fn check_layout(&self, limits: &Limits) -> Result<(), Error> {
+        if self.vertices_per_slice == 0 {
+            return Err(fail(codes::SLICE_VERTICES, at::VERTICES_PER_SLICE));
+        }
+        if u64::from(self.bundle_count) != self.slices().bundle_count() || self.bundle_count >= FIRST_VALIDITY
+        {
+            return Err(fail(codes::BUNDLE_COUNT, at::BUNDLE_COUNT));
+        }
+        let blocks = self.lattice.vertex_count().div_ceil(VALIDITY_BLOCK);
+        if self.validity_records != 0 && u64::from(self.validity_records) != blocks {
+            return Err(fail(codes::VALIDITY_COUNT, at::VALIDITY_RECORDS));
+        }
+        let largest = self.largest_record().unwrap_or(u64::MAX);
+        if largest > u64::from(Maximum::RECORD_BYTES) || self.validity_records >= END_RECORD - FIRST_VALIDITY
+        {
+            return Err(fail(codes::RECORD_TOO_LARGE, at::VERTICES_PER_SLICE));
+        }
+        if self.lattice.vertex_count() > limits.vertices {
+            return Err(fail(codes::LIMIT_VERTICES, at::DIMS));
+        }
+        if largest > u64::from(limits.wire.record_bytes) {
+            return Err(fail(ivg_wire::codes::LIMIT_RECORD_BYTES, at::VERTICES_PER_SLICE));
+        }
+        Ok(())
+    }
+
+    /// The header's bytes, checksum included.
+    #[must_use]
+    pub(crate) fn to_bytes(self) -> [u8; HEADER_BYTES] {
+        let common = CommonHeader {
+            minor: self.minor,
+            required_features: 0,
+            optional_features: self.optional_features,
+            header_bytes: self.header_bytes,
+            content_id: self.content_id,
+            data_offset: self.data_offset,
+            file_bytes: self.file_bytes,
+        };
+        let specific = Specific {
+            dims: self.lattice.dims.map(Into::into),
+            encoding: self.encoding.id().into(),
+            origin: self.lattice.origin.map(Into::into),
+            step: self.lattice.step.map(Into::into),
+            order: self.order.id().into(),
+            scale_exponent: self.scale_exponent.into(),
+            vertices_per_slice: self.vertices_per_slice.into(),
+            seed: self.seed.into(),
+            bundle_count: self.bundle_count.into(),
+            validity_records: self.validity_records.into(),
+            units: self.units.id(),
+            reserved: [0; 7],
+        };
+        let mut bytes = [0; HEADER_BYTES];
+        for (to, from) in bytes.iter_mut().zip(common.to_bytes(&FORMAT).iter().chain(specific.as_bytes())) {
+            *to = *from;
+        }
+        seal_header(&mut bytes);
+        bytes
+    }
+
+    pub(crate) fn slices(&self) -> Slices {
+        match self.order {
+            Order::Slices => Slices::new(&self.lattice, self.vertices_per_slice, self.seed),
+        }
+    }
+
+    /// Number of records, the end record included.
+    #[must_use]
+    pub const fn record_count(&self) -> u64 {
+        (self.bundle_count as u64).saturating_add(self.validity_records as u64).saturating_add(2)
+    }
+
+    /// Number of vertices in a record: of the lattice's values for corners and bundles, of validity entries
+    /// for validity records, 0 for the end record and for records that the file does not have.
+    #[must_use]
+    pub fn record_vertices(&self, id: RecordId) -> u64 {
+        match id {
+            RecordId::Corners => self.lattice.dims.iter().map(|&n| u64::from(n.min(2))).product(),
+            RecordId::Bundle(k) if (1..=self.bundle_count).contains(&k) => self.slices().bundle_len(k),
+            RecordId::Validity(j) if j < self.validity_records => {
+                let first = u64::from(j).saturating_mul(VALIDITY_BLOCK);
+                self.lattice.vertex_count().saturating_sub(first).min(VALIDITY_BLOCK)
+            }
+            _ => 0,
+        }
+    }
+
+    /// Length of a record's payload in bytes (IVG-REC-02).
+    #[must_use]
+    pub fn payload_len(&self, id: RecordId) -> u64 {
+        let vertices = self.record_vertices(id);
+        match id {
+            RecordId::Corners | RecordId::Bundle(_) => {
+                vertices.saturating_mul(self.encoding.bytes_per_vertex())
+            }
+            RecordId::Validity(_) => vertices.saturating_add(vertices.saturating_mul(3).div_ceil(8)),
+            RecordId::End => END_PAYLOAD,
+        }
+    }
+
+    /// The bytes of the file in which a record lies: closed form, whatever the number of records (IVG-REC-03).
+    ///
+    /// Empty for a record that the file does not have.
+    #[must_use]
+    pub fn record_range(&self, id: RecordId) -> Range<u64> {
+        self.checked_range(id).unwrap_or(0..0)
+    }
+
+    fn checked_range(&self, id: RecordId) -> Option<Range<u64>> {
+        let exists = match id {
+            RecordId::Corners | RecordId::End => true,
+            RecordId::Validity(j) => j < self.validity_records,
+            RecordId::Bundle(k) => (1..=self.bundle_count).contains(&k),
+        };
+        if !exists {
+            return None;
+        }
+        let len = |id| record_len(self.payload_len(id));
+        let mut start = self.data_offset;
+        if id != RecordId::Corners {
+            let blocks = match id {
+                RecordId::Validity(j) => j,
+                _ => self.validity_records,
+            };
+            start = start.checked_add(len(RecordId::Corners)?)?;
+            // Every block before another one is full; only the last of all may be shorter.
+            let full = blocks.min(self.validity_records.saturating_sub(1));
+            start = start.checked_add(u64::from(full).checked_mul(len(RecordId::Validity(0))?)?)?;
+            if blocks > full {
+                start = start.checked_add(len(RecordId::Validity(full))?)?;
+            }
+        }
+        let bundles = match id {
+            RecordId::Bundle(k) => k.saturating_sub(1),
+            RecordId::End => self.bundle_count,
+            _ => 0,
+        };
+        if bundles > 0 {
+            // All bundles to which every slice gives its full share are equally long. After them come at most
+            // five more: one in which the outer slices run out, and, since an inner slice has at most four
+            // vertices more, four in which only the inner ones are left.
+            let full = u64::from(bundles).min(self.slices().full_bundles());
+            start = start.checked_add(full.checked_mul(len(RecordId::Bundle(1))?)?)?;
+            for k in u32::try_from(full).ok()?..bundles {
+                start = start.checked_add(len(RecordId::Bundle(k.checked_add(1)?))?)?;
+            }
+        }
+        Some(start..start.checked_add(len(id)?)?)
+    }
+
+    /// The length of the longest record.
+    fn largest_record(&self) -> Option<u64> {
+        let ids = [RecordId::Corners, RecordId::Validity(0), RecordId::Bundle(1), RecordId::End];
+        ids.into_iter()
+            .map(|id| record_len(self.payload_len(id)))
+            .try_fold(0, |most, len| Some(most.max(len?)))
+    }
+
+    /// The file's length that follows from everything else in the header.
+    pub(crate) fn implied_file_bytes(&self) -> Option<u64> {
+        self.checked_range(RecordId::End).map(|range| range.end)
+    }
+
+    /// The record that follows `id` in the file; `None` after the end record.
+    #[must_use]
+    pub fn next_record(&self, id: RecordId) -> Option<RecordId> {
+        let bundle_or_end = |k| if k <= self.bundle_count { RecordId::Bundle(k) } else { RecordId::End };
+        match id {
+            RecordId::Corners if self.validity_records > 0 => Some(RecordId::Validity(0)),
+            RecordId::Corners => Some(bundle_or_end(1)),
+            RecordId::Validity(j) => match j.saturating_add(1) {
+                next if next < self.validity_records => Some(RecordId::Validity(next)),
+                _ => Some(bundle_or_end(1)),
+            },
+            RecordId::Bundle(k) => Some(bundle_or_end(k.saturating_add(1))),
+            RecordId::End => None,
+        }
+    }
+
+    /// Every record of the file, in the order in which they lie.
+    pub fn records(&self) -> impl Iterator<Item = RecordId> + '_ {
+        core::iter::successors(Some(RecordId::Corners), |&id| self.next_record(id))
+    }
+
+    /// The linear indices of the vertices in bundle `k`, counted from 1, in stored order; none if the file
+    /// has no such bundle.
+    #[must_use]
+    pub fn bundle_vertices(&self, k: u32) -> BundleVertices {
+        let k = if k <= self.bundle_count { k } else { 0 };
+        BundleVertices::new(self.slices(), self.lattice, k)
+    }
+
+    /// The linear index of vertex `n`, counted from 0, of bundle `k`, without walking there.
+    #[must_use]
+    pub fn bundle_vertex(&self, k: u32, n: u64) -> Option<u64> {
+        (1..=self.bundle_count).contains(&k).then(|| self.slices().vertex(&self.lattice, k, n)).flatten()
+    }
+}
+
+/// The scale exponents for which every RGB9E5 colour is exact in binary32 (IVG-HDR-04).
+pub(crate) const SCALE_EXPONENTS: core::ops::RangeInclusive<i16> = -125..=112;
+
+fn fail(code: Code, at: u64) -> Error {
+    Error::new(code, ByteOffset(at), Part::Header)
+}
+
+fn lattice_error(error: LatticeError) -> Error {
+    let field = |start: u64, size: u64, axis: u8| start.saturating_add(size.saturating_mul(u64::from(axis)));
+    match error {
+        LatticeError::EmptyAxis { axis } => fail(codes::DIMENSIONS, field(at::DIMS, 2, axis)),
+        LatticeError::NotFinite { axis } => fail(codes::ORIGIN, field(at::ORIGIN, 8, axis)),
+        LatticeError::Step { axis } => fail(codes::STEP, field(at::STEP, 8, axis)),
+    }
+}
+
+#[cfg(test)]
+mod tests;

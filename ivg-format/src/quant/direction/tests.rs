@@ -1,0 +1,164 @@
+use super::*;
+use quickcheck::{TestResult, quickcheck};
+
+const AXES: [[i32; 3]; 6] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
+
+/// Compares x / sqrt(squared) with `value` exactly: whether no other binary32 number is nearer.
+fn is_nearest(x: i32, squared: i32, value: f32) -> bool {
+    if x == 0 {
+        return value.to_bits() == 0;
+    }
+    if (x < 0) != (value < 0.0) {
+        return false;
+    }
+    // value = m × 2^e with 2^23 ≤ m < 2^24; its neighbours' midpoints are (2m ± 1) × 2^(e - 1). The quotient lies
+    // between them if its square does: x² 2^(2 - 2e) between (2m ± 1)² × squared. At most 10 + 2 × 35 + 22 and
+    // 50 + 23 bits: they fit. (At m = 2^23 the lower midpoint is nearer; the bound below is then the laxer one,
+    // so that case is compared with (4m - 1) / 2 instead.)
+    let bits = value.abs().to_bits();
+    let (e, m) = ((bits >> 23) as i32 - 150, u128::from(bits & 0x7F_FFFF | 0x80_0000));
+    let quotient = u128::from(x.unsigned_abs()).pow(2) << (4 - 2 * e);
+    let squared = squared as u128;
+    let above = (4 * m + 2).pow(2) * squared;
+    let below = if m == 0x80_0000 { 4 * m - 1 } else { 4 * m - 2 }.pow(2) * squared;
+    below < quotient && quotient < above
+}
+
+#[test]
+fn every_code_decodes_to_the_nearest_number_or_is_forbidden() {
+    for code in 0..1u32 << 24 {
+        let halves = [code & 0xFFF, code >> 12];
+        let decoded = decode_octahedral24(code);
+        let Some(direction) = decoded else {
+            assert!(halves.contains(&4095), "{code:#08x} was refused");
+            continue;
+        };
+        assert!(!halves.contains(&4095), "{code:#08x} is forbidden");
+        // The definition of the map, written differently from the code under test.
+        let [u, v] = halves.map(|h| h as i32 - 2047);
+        let z = 2047 - (u.abs() + v.abs());
+        let t = (-z).max(0);
+        let point = [u - t * u.signum(), v - t * v.signum(), z];
+        let squared = point.iter().map(|c| c * c).sum();
+        for (c, d) in point.into_iter().zip(direction) {
+            assert!(is_nearest(c, squared, d), "{code:#08x}: {c} / sqrt({squared}) became {d:e}");
+        }
+    }
+}
+
+#[test]
+fn a_number_that_is_one_unit_off_is_not_the_nearest() {
+    let [x, _, _] = decode_octahedral24(0x80_0C00).unwrap();
+    let (u, v) = (0xC00 - 2047, 0x800 - 2047);
+    let squared = u * u + v * v + (2047 - u - v) * (2047 - u - v);
+    assert!(is_nearest(u, squared, x));
+    assert!(!is_nearest(u, squared, x.next_up()) && !is_nearest(u, squared, x.next_down()));
+}
+
+#[test]
+fn the_axes_are_exact() {
+    for axis in AXES {
+        let code = encode_octahedral24(axis.map(f64::from)).unwrap();
+        assert_eq!(decode_octahedral24(code).unwrap(), axis.map(|c| c as f32));
+    }
+}
+
+#[test]
+fn the_nearest_code_of_all_is_found() {
+    // Directions on faces, edges and near the seams of the map, above and below the equator.
+    let vectors: [[f64; 3]; 12] = [
+        [1.0, 1.0, 1.0],
+        [-1.0, 1.0, -1.0],
+        [1.0, -1.0, 0.0],
+        [0.6, 0.8, 1e-9],
+        [0.6, -0.8, -1e-9],
+        [1e-5, 1e-5, -1.0],
+        [-0.3, 0.001, -0.9],
+        [0.999, 0.0001, -0.02],
+        [0.1, 0.2, 0.3],
+        [-0.7, -0.2, 0.4],
+        [0.000_2, -0.95, -0.3],
+        [0.333_3, 0.333_4, -0.333_2],
+    ];
+    let goals = vectors.map(|v| {
+        let length = libm::sqrt(v.iter().map(|c| c * c).sum());
+        v.map(|c| c / length)
+    });
+    let mut most = [-1.0f64; 12];
+    for v in -SCALE..=SCALE {
+        for u in -SCALE..=SCALE {
+            let point = fold(u, v).map(f64::from);
+            let length = libm::sqrt(point.iter().map(|c| c * c).sum());
+            for (most, goal) in most.iter_mut().zip(&goals) {
+                *most = most.max(point.iter().zip(goal).map(|(a, b)| a * b).sum::<f64>() / length);
+            }
+        }
+    }
+    for (vector, (goal, most)) in vectors.iter().zip(goals.iter().zip(most)) {
+        let code = encode_octahedral24(*vector).unwrap();
+        let point = fold((code & 0xFFF) as i32 - SCALE, (code >> 12) as i32 - SCALE).map(f64::from);
+        let length = libm::sqrt(point.iter().map(|c| c * c).sum());
+        let cosine = point.iter().zip(goal).map(|(a, b)| a * b).sum::<f64>() / length;
+        // Sums of three products in binary64 differ by some units of 2^-53 between the two ways.
+        assert!(most - cosine <= 1e-15, "{vector:?}: a code is nearer by {:e}", most - cosine);
+    }
+}
+
+#[test]
+fn what_has_no_direction_has_no_code() {
+    for vector in [[0.0; 3], [-0.0; 3], [f64::NAN, 1.0, 0.0], [f64::INFINITY, 0.0, 0.0]] {
+        assert_eq!(encode_octahedral24(vector), None);
+        assert_eq!(encode_octahedral24_in_hemisphere(vector, 0, true), None);
+    }
+    assert_eq!(encode_octahedral24_in_hemisphere([1.0; 3], 3, true), None, "there is no such axis");
+}
+
+#[test]
+fn vectors_of_any_length_have_a_direction() {
+    for length in [f64::MAX, 1e-308, 5e-324] {
+        assert_eq!(encode_octahedral24([0.0, -length, 0.0]), encode_octahedral24([0.0, -1.0, 0.0]));
+    }
+}
+
+/// A vector from integers: all directions, some of them on axes, edges and seams.
+fn vector(x: i8, y: i8, z: i16) -> Option<[f64; 3]> {
+    (x != 0 || y != 0 || z != 0).then(|| [f64::from(x), f64::from(y), f64::from(z) / 256.0])
+}
+
+quickcheck! {
+    fn the_angle_is_within_the_bound(x: i8, y: i8, z: i16) -> TestResult {
+        let Some(v) = vector(x, y, z) else { return TestResult::discard() };
+        let d = decode_octahedral24(encode_octahedral24(v).unwrap()).unwrap().map(f64::from);
+        let cross = [v[1] * d[2] - v[2] * d[1], v[2] * d[0] - v[0] * d[2], v[0] * d[1] - v[1] * d[0]];
+        let length = |a: [f64; 3]| libm::sqrt(a.iter().map(|c| c * c).sum());
+        // Neighbouring points lie at most sqrt(2) apart on the octahedron of scale 2047, in a triangle whose
+        // circumradius is sqrt(2/3); seen from the centre, which is 2047/sqrt(3) away, that is 0.0396 degrees at
+        // a face's centre. Towards edges the quadrilateral cells of the map are larger: half a diagonal,
+        // sqrt(6)/2 at sqrt(2) × 1023.5, is 0.0485 degrees; plus half of the largest foreshortening, 0.06.
+        let degrees = (length(cross) / length(v) / length(d)).asin().to_degrees();
+        TestResult::from_bool(degrees <= 0.06)
+    }
+
+    fn decoded_directions_keep_their_direction(code: u32) -> TestResult {
+        match decode_octahedral24(code & 0xFF_FFFF) {
+            None => TestResult::discard(),
+            Some(d) => {
+                let again = encode_octahedral24(d.map(f64::from)).unwrap();
+                TestResult::from_bool(decode_octahedral24(again) == Some(d))
+            }
+        }
+    }
+
+    fn directions_stay_strictly_in_their_hemisphere(x: i8, y: i8, z: i16, hemisphere: u8) -> TestResult {
+        let Some(v) = vector(x, y, z) else { return TestResult::discard() };
+        let (axis, positive) = (usize::from(hemisphere % 3), hemisphere >= 128);
+        let code = encode_octahedral24_in_hemisphere(v, axis, positive).unwrap();
+        let d = decode_octahedral24(code).unwrap();
+        let along = if positive { d[axis] } else { -d[axis] };
+        // A component of 1 on the octahedron is at least 1/2047 of the length.
+        let inside = along >= 1.0 / 2047.0;
+        // Where the vector is well inside, the restriction must not change the code.
+        let clear = if positive { v[axis] } else { -v[axis] } > v.iter().map(|c| c.abs()).sum::<f64>() / 500.0;
+        TestResult::from_bool(inside && (!clear || Some(code) == encode_octahedral24(v)))
+    }
+}

@@ -1,0 +1,59 @@
+//! RGB9E5: three 9-bit mantissas and one shared 5-bit exponent in 32 bits.
+//!
+//! Bits 0–8 red, 9–17 green, 18–26 blue, 27–31 the exponent E; a component is `mantissa × 2^(E − 24)`
+//! (IVG-RGB-01; the layout of `EXT_texture_shared_exponent` and of the GPU format `RGB9E5`). Decoding is
+//! exact in binary32. Encoding is off by at most half a step, `2^(E − 25)`, which is at most 1/512 of the
+//! largest component or 2^−25, whichever is more.
+
+use super::{floor_log2, power_of_two, power_of_two_f64};
+
+/// The largest value that can be stored: 511 × 2^7.
+pub const LARGEST: f32 = 65408.0;
+
+/// Bias of the exponent, plus the 9 bits of the mantissa.
+const EXPONENT_OFFSET: i32 = 15 + 9;
+
+/// Encodes a colour (IVG-RGB-03): components below 0 and NaN count as 0, components above [`LARGEST`] as
+/// [`LARGEST`]; halves are rounded up.
+#[must_use]
+pub fn encode(colour: [f32; 3]) -> u32 {
+    encode_f64(colour.map(f64::from))
+}
+
+/// As [`encode`], without rounding the components to binary32 first.
+#[must_use]
+pub(crate) fn encode_f64(colour: [f64; 3]) -> u32 {
+    // `f64::max` and `f64::min` take the number of a number and a NaN.
+    let [r, g, b] = colour.map(|c| c.max(0.0).min(f64::from(LARGEST)));
+    let largest = r.max(g).max(b);
+    let mut exponent = (floor_log2(largest) + 16).max(0);
+    // Rounding may carry the largest mantissa to 512, which is 256 at the next exponent. It cannot happen at
+    // exponent 31, because the components were clamped to 511 steps of that exponent.
+    if round(largest, exponent) == 512 {
+        exponent += 1;
+    }
+    let exponent_bits = (exponent as u32) << 27;
+    exponent_bits | round(b, exponent) << 18 | round(g, exponent) << 9 | round(r, exponent)
+}
+
+/// The mantissa of `component` at `exponent`, halves rounded up. The component is not negative and the
+/// product with a power of two exact, so that truncating after adding one half rounds as it should.
+fn round(component: f64, exponent: i32) -> u32 {
+    (component * power_of_two_f64(EXPONENT_OFFSET - exponent) + 0.5) as u32
+}
+
+/// Decodes a colour; every code is valid and the result exact.
+#[must_use]
+pub fn decode(code: u32) -> [f32; 3] {
+    decode_scaled(code, 0)
+}
+
+/// Decodes a colour times 2^`scale_exponent`; exact for −125 ≤ `scale_exponent` ≤ 112 (IVG-RGB-02).
+#[must_use]
+pub(crate) fn decode_scaled(code: u32, scale_exponent: i16) -> [f32; 3] {
+    let step = power_of_two((code >> 27) as i32 - EXPONENT_OFFSET + i32::from(scale_exponent));
+    [code, code >> 9, code >> 18].map(|bits| (bits & 0x1FF) as f32 * step)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,111 @@
+use super::*;
+use quickcheck::quickcheck;
+
+#[track_caller]
+fn check(colour: [f32; 3], code: u32, decoded: [f32; 3]) {
+    assert_eq!(encode(colour), code, "{colour:?} became {:#010x}, expected {code:#010x}", encode(colour));
+    assert_eq!(decode(code), decoded, "{code:#010x}");
+}
+
+const fn code(exponent: u32, r: u32, g: u32, b: u32) -> u32 {
+    exponent << 27 | b << 18 | g << 9 | r
+}
+
+#[test]
+fn simple_colours() {
+    check([0.0; 3], 0, [0.0; 3]);
+    check([1.0, 0.5, 0.25], code(16, 256, 128, 64), [1.0, 0.5, 0.25]);
+    check([3.0, 0.0, 1.0], code(17, 384, 0, 128), [3.0, 0.0, 1.0]);
+}
+
+#[test]
+fn rounding_to_512_steps_up_to_the_next_exponent() {
+    // 511.5 lies halfway between 511 and 512 at the exponent whose step is 1: rounded up, it needs step 2.
+    check([511.5, 0.0, 0.0], code(25, 256, 0, 0), [512.0, 0.0, 0.0]);
+    check([511.499_97, 0.0, 0.0], code(24, 511, 0, 0), [511.0, 0.0, 0.0]);
+    // The others are rounded with the new step: 3 halves of it are rounded up.
+    check([511.5, 3.0, 2.999_999_8], code(25, 256, 2, 1), [512.0, 4.0, 2.0]);
+}
+
+#[test]
+fn the_largest_number_and_what_is_above_it() {
+    check([65408.0; 3], code(31, 511, 511, 511), [65408.0; 3]);
+    check([f32::MAX, 65408.5, f32::INFINITY], code(31, 511, 511, 511), [65408.0; 3]);
+    check([65344.0, 0.0, 0.0], code(31, 511, 0, 0), [65408.0, 0.0, 0.0]);
+    check([65343.996, 0.0, 0.0], code(31, 510, 0, 0), [65280.0, 0.0, 0.0]);
+}
+
+#[test]
+fn the_smallest_number_and_what_is_below_it() {
+    let least = power_of_two(-24);
+    check([least, 0.0, 0.0], code(0, 1, 0, 0), [least, 0.0, 0.0]);
+    check([least / 2.0, 0.0, 0.0], code(0, 1, 0, 0), [least, 0.0, 0.0]);
+    check([least * 0.499_999_97, f32::MIN_POSITIVE, f32::from_bits(1)], 0, [0.0; 3]);
+    // 511 steps fit at exponent 0, 512 do not.
+    check([least * 511.0, 0.0, 0.0], code(0, 511, 0, 0), [least * 511.0, 0.0, 0.0]);
+    check([least * 511.5, 0.0, 0.0], code(1, 256, 0, 0), [least * 512.0, 0.0, 0.0]);
+}
+
+#[test]
+fn what_is_no_colour_counts_as_zero() {
+    check([f32::NAN, -1.0, -0.0], 0, [0.0; 3]);
+    check([f32::NEG_INFINITY, f32::NAN, 1.0], code(16, 0, 0, 256), [0.0, 0.0, 1.0]);
+    assert!(decode(encode([-0.0; 3])).iter().all(|c| c.is_sign_positive()));
+}
+
+#[test]
+fn every_exponent_edge_decodes_to_itself() {
+    for exponent in 0..32 {
+        for mantissa in [0, 1, 255, 256, 511] {
+            let colour = decode(code(exponent, mantissa, mantissa / 2, 0));
+            assert_eq!(decode(encode(colour)), colour, "exponent {exponent}, mantissa {mantissa}");
+        }
+    }
+}
+
+#[test]
+fn scaling_is_exact_over_the_whole_range_of_exponents() {
+    for scale_exponent in -125..=112i16 {
+        for (e, m) in [(0, 1), (0, 511), (15, 257), (31, 1), (31, 511)] {
+            let exact = f64::from(m) * power_of_two_f64(e as i32 - 24 + i32::from(scale_exponent));
+            let [decoded, ..] = decode_scaled(code(e, m, 0, 0), scale_exponent);
+            assert_eq!(f64::from(decoded), exact, "E {e}, mantissa {m}, scale {scale_exponent}");
+        }
+    }
+}
+
+/// The textbook form of the extension: logarithms and divisions, no bit tricks.
+fn naive(colour: [f32; 3]) -> [u32; 4] {
+    extern crate std;
+    let clamped = colour.map(|c| if c > 0.0 { f64::from(c.min(65408.0)) } else { 0.0 });
+    let most = clamped.iter().fold(0.0f64, |a, &b| a.max(b));
+    let preliminary = if most == 0.0 { -16 } else { (most.log2().floor() as i32).max(-16) } + 16;
+    let step = |e: i32| (f64::from(e) - 24.0).exp2();
+    let exponent = if (most / step(preliminary) + 0.5).floor() == 512.0 { preliminary + 1 } else { preliminary };
+    let [r, g, b] = clamped.map(|c| (c / step(exponent) + 0.5).floor() as u32);
+    [r, g, b, exponent as u32]
+}
+
+quickcheck! {
+    fn agrees_with_the_textbook_form(bits: (u32, u32, u32)) -> bool {
+        // Bit patterns, so that all magnitudes, NaN and infinities appear.
+        let colour = [bits.0, bits.1, bits.2].map(f32::from_bits);
+        let [r, g, b, e] = naive(colour);
+        encode(colour) == code(e, r, g, b)
+    }
+
+    fn is_within_half_a_step(bits: (u32, u32, u32)) -> bool {
+        // Positive numbers between 2^-32 and 2^15: exponents 95 to 141 of binary32.
+        let colour = [bits.0, bits.1, bits.2]
+            .map(|b| f32::from_bits((95 + (b >> 23) % 47) << 23 | (b & 0x7F_FFFF)));
+        let most = colour.iter().fold(0.0f32, |a, &b| a.max(b));
+        // Half a step is 1/512 of the largest component, or 2^-25 at the lowest exponent.
+        let bound = (most / 512.0).max(power_of_two(-25));
+        colour.iter().zip(decode(encode(colour))).all(|(&a, b)| (a - b).abs() <= bound)
+    }
+
+    fn decoded_codes_are_stable(code: u32) -> bool {
+        let colour = decode(code);
+        decode(encode(colour)) == colour
+    }
+}
