@@ -1,0 +1,111 @@
+//! What a collapse costs.
+
+use glam::DVec3;
+
+use crate::options::Cost;
+use crate::quadric::Quadric;
+use crate::rules::twice_area;
+use crate::surface::{Ring, Surface};
+
+/// Weight of the constraint planes along borders, per squared edge length, against face planes per area.
+const BORDER_WEIGHT: f64 = 2.0;
+/// Weight of the constraint planes along seams. Less than a border's: a seam that moves leaves no gap.
+const SEAM_WEIGHT: f64 = 1.0;
+/// Share of the squared length of an edge, times the area around the vertex that moves, that is added to a quadric's
+/// cost. It decides where quadrics cannot: in flat regions short edges go first, so that triangles stay well shaped. An
+/// edge pays as much as for a distance of 1/3000 of its length.
+const LENGTH_WEIGHT: f64 = 1e-7;
+
+/// The costs of all collapses, kept up to date while vertices go.
+#[derive(Debug)]
+pub(crate) struct Costs {
+    kind: Cost,
+    quadrics: Vec<Quadric>,
+    /// Each vertex's quadric at its own position.
+    own: Vec<f64>,
+}
+
+impl Costs {
+    /// For the uncollapsed surface.
+    pub(crate) fn new(kind: Cost, surface: &Surface, ring: &mut Ring) -> Self {
+        let mut quadrics = vec![Quadric::default(); surface.positions.len()];
+        for f in 0..surface.faces.len() {
+            let triangle @ [a, ..] = surface.faces[f].map(|v| surface.positions[v as usize]);
+            let normal = twice_area(triangle);
+            let twice = normal.length();
+            if twice > 0.0 {
+                for v in surface.faces[f] {
+                    quadrics[v as usize].add_plane(normal / twice, a, 0.5 * twice, 0.5 * twice);
+                }
+            }
+        }
+        for u in 0..crate::input::index(surface.positions.len()) {
+            ring.collect(surface, u);
+            for edge in ring.edges.iter().filter(|e| e.is_feature() && e.to > u) {
+                let weight = if edge.seam && edge.faces > 1 { SEAM_WEIGHT } else { BORDER_WEIGHT };
+                for &f in surface.around(u).iter().filter(|&&f| surface.faces[f as usize].contains(&edge.to))
+                {
+                    let from = surface.positions[u as usize];
+                    let along = surface.positions[edge.to as usize] - from;
+                    let across = along.cross(twice_area(surface.triangle(f)));
+                    let length = across.length();
+                    if length > 0.0 {
+                        for v in [u, edge.to] {
+                            let weight = weight * along.length_squared();
+                            quadrics[v as usize].add_plane(across / length, from, weight, 0.0);
+                        }
+                    }
+                }
+            }
+        }
+        let own = quadrics.iter().zip(&surface.positions).map(|(q, &p)| q.at(p)).collect();
+        Self { kind, quadrics, own }
+    }
+
+    /// What moving `u` onto its neighbour `v` costs.
+    pub(crate) fn of(&self, surface: &Surface, u: u32, v: u32) -> f64 {
+        let (from, to) = (surface.positions[u as usize], surface.positions[v as usize]);
+        match self.kind {
+            Cost::Quadric => {
+                let moving = &self.quadrics[u as usize];
+                let length = LENGTH_WEIGHT * moving.area() * from.distance_squared(to);
+                moving.at(to) + self.own[v as usize] + length
+            }
+            Cost::Melax => from.distance(to) * curvature(surface, u, v),
+        }
+    }
+
+    /// How far the surface moves, estimated, in units of the surface: for quadrics the root of the mean over the area of
+    /// the squared distances of `v` to the planes that it stands for; for Melax's cost the cost itself, which is a length.
+    pub(crate) fn distance(&self, surface: &Surface, u: u32, v: u32) -> f64 {
+        match self.kind {
+            Cost::Quadric => {
+                let (moving, staying) = (&self.quadrics[u as usize], &self.quadrics[v as usize]);
+                let area = moving.area() + staying.area();
+                let sum = moving.at(surface.positions[v as usize]) + self.own[v as usize];
+                if area > 0.0 { (sum / area).sqrt() } else { 0.0 }
+            }
+            Cost::Melax => self.of(surface, u, v),
+        }
+    }
+
+    /// Tells that `u` has moved onto `v`.
+    pub(crate) fn collapsed(&mut self, surface: &Surface, u: u32, v: u32) {
+        let moved = self.quadrics[u as usize];
+        self.quadrics[v as usize].add(&moved);
+        self.own[v as usize] = self.quadrics[v as usize].at(surface.positions[v as usize]);
+    }
+}
+
+/// Melax's curvature term: over the faces around `u`, the greatest turn against the nearest of the faces on the edge,
+/// from 0 (flat) to 1 (folded back).
+fn curvature(surface: &Surface, u: u32, v: u32) -> f64 {
+    let unit = |f: u32| twice_area(surface.triangle(f)).try_normalize().unwrap_or(DVec3::ZERO);
+    let around = surface.around(u);
+    let sides = || around.iter().filter(|&&f| surface.faces[f as usize].contains(&v));
+    let turn = |f: u32| {
+        let normal = unit(f);
+        sides().map(|&side| (1.0 - normal.dot(unit(side))) * 0.5).fold(1.0, f64::min)
+    };
+    around.iter().map(|&f| turn(f)).fold(0.0, f64::max)
+}
