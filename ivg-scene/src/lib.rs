@@ -7,6 +7,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod demo;
 pub mod import;
 pub mod lights;
 
