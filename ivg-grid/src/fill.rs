@@ -193,9 +193,10 @@ impl Stencil {
 
 /// A weighted mean that stays between the smallest and the largest value added, whatever the rounding.
 ///
-/// Each value moves the mean by a share t < 1 of the way to it. The difference and the product are rounded by less
-/// than 2^-22 together and t is at most 1/2 (the first value is taken as it is and weighs at least as much as any
-/// other), so the exact sum does not pass the new value; rounding is monotone, so the rounded sum does not either.
+/// Each value moves the mean by a share t of the way to it: the whole way for the first, which is exact, and at most
+/// half of it for the others, of which none weighs more than the first. The difference and the product are rounded by
+/// less than 2^-22 together, so the exact sum does not pass the new value; rounding is monotone, so the rounded sum
+/// does not either.
 struct Mean {
     value: HemisphereVectors,
     weight: f32,
@@ -207,10 +208,6 @@ impl Mean {
     }
 
     fn add(&mut self, value: &HemisphereVectors, weight: f32) {
-        if self.weight == 0.0 {
-            *self = Self { value: *value, weight };
-            return;
-        }
         self.weight += weight;
         let share = weight / self.weight;
         let mean = self.value.as_flattened_mut().as_flattened_mut();

@@ -60,6 +60,13 @@ fn the_bias_moves_the_point_along_the_normal_by_a_share_of_the_smallest_step() {
     assert!(moved.x < grid.irradiance(p, n, method, filter).x);
     assert_eq!(grid.surface_irradiance(p, n, 0.0, method, filter), grid.irradiance(p, n, method, filter));
 
+    // An axis of one vertex has no step to be the smallest.
+    let row = Lattice::new([4, 1, 1], [0.0; 3], [3.0, 0.0, 0.0]).expect("a row");
+    let mut flat = IrradianceGrid::new(row).expect("small");
+    (0..4).for_each(|index| flat.set(index, &grid.vectors()[index]));
+    let moved = flat.surface_irradiance(p, n, SURFACE_BIAS, method, filter);
+    assert_eq!(moved, flat.irradiance(DVec3::new(0.9, 0.0, 0.0), n, method, filter));
+
     let point = Lattice::new([1; 3], [0.0; 3], [0.0; 3]).expect("a point");
     let mut single = IrradianceGrid::new(point).expect("small");
     single.set(0, &grid.vectors()[0]);

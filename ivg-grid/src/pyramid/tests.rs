@@ -148,6 +148,8 @@ fn a_wall_inside_a_block_splits_its_node() {
     assert_eq!((level.children(0), level.children(1)), ([0, 4].as_slice(), [1, 5].as_slice()));
     assert!((0..DIRECTIONS).all(|direction| level.links(0, direction).is_empty()));
     assert_eq!(level.links(1, 1), [2]);
+    assert_eq!(level.parents, [NONE, 0, 0], "the part behind the wall ends here");
+    assert_eq!(pyramid.levels[2].len(), 1);
 }
 
 #[test]

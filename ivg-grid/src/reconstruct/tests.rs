@@ -204,3 +204,42 @@ fn hemispheres_that_a_formula_does_not_read_do_not_matter() {
     }
     quickcheck::quickcheck(law as fn(Light, Normal) -> bool);
 }
+
+#[test]
+fn every_component_counts_as_the_formulas_say() {
+    // Vectors without any symmetry, no two components alike; the sums are written out for n = (-2, 3, 6) / 7.
+    let mut vectors = [[[0.0; 3]; 3]; 6];
+    for (index, component) in vectors.as_flattened_mut().as_flattened_mut().iter_mut().enumerate() {
+        *component = ((index * index) % 59) as f32 / 16.0;
+    }
+    let n = Vec3::new(-2.0, 3.0, 6.0) / 7.0;
+    for channel in 0..3 {
+        let v = |hemisphere: usize| vectors[hemisphere][channel];
+        let (x, y, z) = (v(1), v(2), v(4));
+        let squared = (4.0 * (-2.0 * x[0] + 3.0 * x[1] + 6.0 * x[2])
+            + 9.0 * (-2.0 * y[0] + 3.0 * y[1] + 6.0 * y[2])
+            + 36.0 * (-2.0 * z[0] + 3.0 * z[1] + 6.0 * z[2]))
+            / 343.0;
+        let three = (4.0 * (-x[0] + 0.7 * (3.0 * x[1] + 6.0 * x[2]) / 7.0)
+            + 9.0 * (y[1] + 0.7 * (-2.0 * y[0] + 6.0 * y[2]) / 7.0)
+            + 36.0 * (z[2] + 0.7 * (-2.0 * z[0] + 3.0 * z[1]) / 7.0))
+            / 49.0;
+        let sum = |axis: usize| v(2 * axis)[axis] + v(2 * axis + 1)[axis];
+        let difference = |axis: usize, component: usize| v(2 * axis)[component] - v(2 * axis + 1)[component];
+        let mixed = -6.0 * (difference(0, 1) + difference(1, 0))
+            - 12.0 * (difference(0, 2) + difference(2, 0))
+            + 18.0 * (difference(1, 2) + difference(2, 1));
+        let squares = 4.0 * difference(0, 0) + 9.0 * difference(1, 1) + 36.0 * difference(2, 2);
+        let six =
+            0.5 * ((-2.0 * sum(0) + 3.0 * sum(1) + 6.0 * sum(2)) / 7.0 + (squares + 0.5 * mixed) / 49.0);
+        for (method, expected) in Reconstruction::ALL.into_iter().zip([squared, three, six]) {
+            let found = reconstruct_signed(method, &vectors, n)[channel];
+            // Some 20 roundings of sums below 8.
+            assert!(
+                (found - expected).abs() < 20.0 * 8.0 * 6e-8,
+                "{}: {found}, not {expected}",
+                method.name()
+            );
+        }
+    }
+}
