@@ -1,0 +1,122 @@
+//! Irradiance gathered at points by path tracing: slow, unbiased, without averaging over cells. The oracle of every
+//! other estimator.
+
+use core::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+
+use crate::sampling::hemisphere;
+use crate::sampling::rng::{Purpose, Stream};
+use crate::stage::Stage;
+
+/// Shortest path after which Russian roulette may end it.
+const SURE_BOUNCES: u32 = 3;
+
+/// Reflections after which a path ends whatever it carries: only between surfaces of albedo 1 does one get this far.
+const MOST_BOUNCES: u32 = 4096;
+
+/// A mean and its standard error, of an array of numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Mean<const N: usize> {
+    sum: [f64; N],
+    squares: [f64; N],
+    count: u64,
+}
+
+impl<const N: usize> Default for Mean<N> {
+    fn default() -> Self {
+        Self { sum: [0.0; N], squares: [0.0; N], count: 0 }
+    }
+}
+
+impl<const N: usize> Mean<N> {
+    /// Adds a sample.
+    pub(crate) fn add(&mut self, sample: &[f64; N]) {
+        for n in 0..N {
+            self.sum[n] += sample[n];
+            self.squares[n] += sample[n] * sample[n];
+        }
+        self.count += 1;
+    }
+
+    /// The mean.
+    pub(crate) fn mean(&self) -> [f64; N] {
+        self.sum.map(|sum| sum / self.count as f64)
+    }
+
+    /// The standard error of the mean; needs two samples.
+    pub(crate) fn standard_error(&self) -> [f64; N] {
+        let count = self.count as f64;
+        core::array::from_fn(|n| {
+            let mean = self.sum[n] / count;
+            ((self.squares[n] / count - mean * mean).max(0.0) / (count - 1.0)).sqrt()
+        })
+    }
+}
+
+impl Stage<'_> {
+    /// One sample of the indirect irradiance vectors at a point of bake space, `[hemisphere][rgb][xyz]` flattened \[W/m²\]:
+    /// a direction even over the sphere, of the light along it all but the emission of the first surface.
+    pub(crate) fn sample_vectors(&self, point: Vec3, stream: &Stream) -> [f64; 54] {
+        let u = stream.uniforms(0, Purpose::Gather);
+        let direction = hemisphere::sphere([u[0], u[1]]);
+        let radiance = self.radiance(point, direction, stream, false).to_array();
+        let w = (direction.as_dvec3() * (4.0 * PI)).to_array();
+        core::array::from_fn(|n| {
+            let (hemisphere, channel, component) = (n / 9, n / 3 % 3, n % 3);
+            let axis = w[hemisphere / 2];
+            let inside = if hemisphere % 2 == 0 { axis > 0.0 } else { axis < 0.0 };
+            if inside { radiance[channel] * w[component] } else { 0.0 }
+        })
+    }
+
+    /// One sample of the indirect irradiance of a surface with unit `normal` at a point of bake space \[W/m²\].
+    pub(crate) fn sample_irradiance(&self, point: Vec3, normal: Vec3, stream: &Stream) -> DVec3 {
+        let u = stream.uniforms(0, Purpose::Gather);
+        self.radiance(point, hemisphere::cosine(normal, [u[0], u[1]]), stream, false) * PI
+    }
+
+    /// One sample of the radiance that arrives at `origin` from `direction` \[W/(m² sr)\]. Without `direct`, what the first
+    /// surface emits is left out (the sky is not).
+    pub(crate) fn radiance(&self, origin: Vec3, direction: Vec3, stream: &Stream, direct: bool) -> DVec3 {
+        let (mut origin, mut direction) = (origin, direction);
+        let (mut radiance, mut throughput) = (DVec3::ZERO, DVec3::ONE);
+        for bounce in 1..=MOST_BOUNCES {
+            let Some(hit) = self.accel.closest_hit(origin, direction, f32::MAX) else {
+                return radiance + throughput * self.emitters.sky().as_dvec3();
+            };
+            let point = self.surfaces.point(hit.triangle, hit.weights);
+            if bounce == 1 && direct {
+                radiance += self.surfaces.emission(hit.triangle, point.normal, -direction).as_dvec3();
+            }
+            let albedo = self.surfaces.albedo(&hit).as_dvec3();
+            let side = point.facing(-direction);
+            origin = point.origin(side);
+            throughput *= albedo;
+            if throughput.max_element() <= 0.0 {
+                return radiance;
+            }
+            radiance += throughput * self.direct(origin, side, stream, bounce) / PI;
+            let u = stream.uniforms(bounce, Purpose::Reflection);
+            if bounce > SURE_BOUNCES {
+                let kept = albedo.max_element().min(1.0);
+                if f64::from(u[2]) >= kept {
+                    return radiance;
+                }
+                throughput /= kept;
+            }
+            direction = hemisphere::cosine(side, [u[0], u[1]]);
+        }
+        radiance
+    }
+
+    /// One sample of the direct irradiance of a surface with unit normal `side`, without the sky \[W/m²\].
+    pub(crate) fn direct(&self, origin: Vec3, side: Vec3, stream: &Stream, step: u32) -> DVec3 {
+        let Some(light) = self.emitters.arrive(origin, stream, step) else { return DVec3::ZERO };
+        let cos = side.dot(light.direction);
+        if cos <= 0.0 || self.accel.occluded(origin, light.direction, light.distance) {
+            return DVec3::ZERO;
+        }
+        light.irradiance.as_dvec3() * f64::from(cos)
+    }
+}

@@ -1,0 +1,45 @@
+//! From flights of photons to irradiance vectors.
+
+pub(crate) mod face_crossing;
+pub(crate) mod gather;
+pub(crate) mod track_length;
+
+use glam::Vec3;
+use ivg_grid::HemisphereVectors;
+
+use crate::accumulate::{NUMBERS, Sums};
+
+/// A straight flight of a photon between two surfaces, or beyond the last.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flight {
+    pub(crate) origin: Vec3,
+    /// Unit length.
+    pub(crate) direction: Vec3,
+    /// Length \[bake units\], perhaps infinite.
+    pub(crate) length: f32,
+    /// Power as a share of a whole photon's, each channel in [0, 1].
+    pub(crate) power: Vec3,
+}
+
+impl Flight {
+    /// Power times the direction the light comes from: `[rgb][xyz]`, scaled.
+    #[inline]
+    fn numbers(&self, scale: f32) -> [f32; NUMBERS] {
+        let w = -self.direction * scale;
+        let [r, g, b] = self.power.to_array().map(|channel| w * channel);
+        [r.x, r.y, r.z, g.x, g.y, g.z, b.x, b.y, b.z]
+    }
+}
+
+/// How the flights of photons become irradiance vectors.
+pub(crate) trait Estimate: Sync {
+    /// Number of buckets of deposits.
+    fn buckets(&self) -> usize;
+
+    /// Deposits a flight.
+    fn deposit(&self, flight: &Flight, sums: &mut impl Sums);
+
+    /// The vectors of a vertex from the sums of all buckets; `power` is what a photon of share 1 carries
+    /// \[W\], lengths are in bake units.
+    fn vectors(&self, sums: &[i64], vertex: usize, power: f64) -> HemisphereVectors;
+}

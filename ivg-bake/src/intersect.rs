@@ -1,0 +1,94 @@
+//! Watertight intersection of a ray with a triangle.
+//!
+//! S. Woop, C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2(1), 2013: the triangle is sheared so
+//! that the ray becomes the z axis; the three edge functions of neighbours sharing an edge are then the same numbers
+//! with opposite sign, so that a ray through an edge or a vertex cannot pass between them. Where an edge function is
+//! exactly zero it is computed again in f64. Both sides of a triangle are hit.
+
+use glam::Vec3;
+
+/// The corners of a triangle, each padded to four numbers so that an axis can be picked without a bounds check.
+pub(crate) type Corners = [[f32; 4]; 3];
+
+/// The corners as [`intersect`] takes them.
+pub(crate) fn corners(points: [Vec3; 3]) -> Corners {
+    points.map(|p| [p.x, p.y, p.z, 0.0])
+}
+
+/// A ray prepared for many triangles (Woop et al., section 3.2).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShearedRay {
+    origin: [f32; 4],
+    axes: [usize; 3],
+    shear: [f32; 3],
+}
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crossing {
+    /// Distance in lengths of the ray's direction, above 0.
+    pub(crate) distance: f32,
+    /// Barycentric weights of the three corners; they sum to 1.
+    pub(crate) weights: [f32; 3],
+}
+
+impl ShearedRay {
+    /// Prepares a ray. The direction must not be zero.
+    #[inline]
+    pub(crate) fn new(origin: Vec3, direction: Vec3) -> Self {
+        let d = direction.to_array();
+        let size = direction.abs();
+        let z = if size.x > size.y {
+            if size.x > size.z { 0 } else { 2 }
+        } else if size.y > size.z {
+            1
+        } else {
+            2
+        };
+        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
+        if d[z] < 0.0 {
+            core::mem::swap(&mut x, &mut y);
+        }
+        Self {
+            origin: [origin.x, origin.y, origin.z, 0.0],
+            axes: [x, y, z],
+            shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]],
+        }
+    }
+
+    /// Where the ray meets the triangle at a distance above 0 and up to `limit`, if it does.
+    #[inline]
+    pub(crate) fn intersect(&self, triangle: &Corners, limit: f32) -> Option<Crossing> {
+        let [kx, ky, kz] = self.axes.map(|axis| axis & 3);
+        let [sx, sy, sz] = self.shear;
+        let relative = |corner: &[f32; 4]| {
+            let z = corner[kz] - self.origin[kz];
+            let x = (corner[kx] - self.origin[kx]) - sx * z;
+            let y = (corner[ky] - self.origin[ky]) - sy * z;
+            [x, y, z]
+        };
+        let [a, b, c] = [relative(&triangle[0]), relative(&triangle[1]), relative(&triangle[2])];
+        let mut u = c[0] * b[1] - c[1] * b[0];
+        let mut v = a[0] * c[1] - a[1] * c[0];
+        let mut w = b[0] * a[1] - b[1] * a[0];
+        if u == 0.0 || v == 0.0 || w == 0.0 {
+            let edge = |p: [f32; 3], q: [f32; 3]| {
+                (f64::from(p[0]) * f64::from(q[1]) - f64::from(p[1]) * f64::from(q[0])) as f32
+            };
+            u = edge(c, b);
+            v = edge(a, c);
+            w = edge(b, a);
+        }
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return None;
+        }
+        let determinant = u + v + w;
+        if determinant == 0.0 {
+            return None;
+        }
+        let reciprocal = 1.0 / determinant;
+        let distance = (u * a[2] + v * b[2] + w * c[2]) * sz * reciprocal;
+        let hit = distance > 0.0 && distance <= limit;
+        hit.then(|| Crossing { distance, weights: [u * reciprocal, v * reciprocal, w * reciprocal] })
+    }
+}

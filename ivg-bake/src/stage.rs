@@ -1,0 +1,73 @@
+//! A scene made ready for rays: geometry, surfaces, lights, and the space they are in.
+
+use glam::{DVec3, Vec3};
+use ivg_scene::{Effect, EffectPlan, FlatScene, Scene};
+
+use crate::BakeError;
+use crate::accel::TraceScene;
+use crate::emit::{Emitters, Sphere};
+use crate::space::Space;
+use crate::surface::Surfaces;
+
+/// Everything that rays need to know.
+#[derive(Debug)]
+pub(crate) struct Stage<'a> {
+    pub(crate) space: Space,
+    pub(crate) surfaces: Surfaces<'a>,
+    pub(crate) accel: TraceScene,
+    pub(crate) emitters: Emitters,
+}
+
+/// Which effects cost something only where they are simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Effects {
+    /// Look up albedo textures.
+    pub(crate) textures: bool,
+    /// Light from outside.
+    pub(crate) sky: bool,
+}
+
+impl Effects {
+    /// What a plan asks for.
+    pub(crate) fn of(plan: &EffectPlan) -> Self {
+        Self { textures: plan.needs(Effect::Textures), sky: plan.needs(Effect::Sky) }
+    }
+}
+
+/// Radius of the sphere that light from outside starts on, relative to half the diagonal of everything.
+const WORLD_MARGIN: f32 = 1.001;
+
+impl<'a> Stage<'a> {
+    /// Makes a scene ready. `around` is a box in world space \[m\] that matters besides the scene.
+    ///
+    /// # Errors
+    ///
+    /// [`BakeError::NoLight`], [`BakeError::BadNumber`], [`BakeError::BadIndex`], [`BakeError::TreeTooDeep`].
+    pub(crate) fn new(
+        scene: &'a Scene,
+        flat: &'a FlatScene,
+        effects: Effects,
+        around: Option<(DVec3, DVec3)>,
+    ) -> Result<Self, BakeError> {
+        let (mut min, mut max) = bounds(flat).or(around).unwrap_or((DVec3::ZERO, DVec3::ONE));
+        if let Some((low, high)) = around {
+            (min, max) = (min.min(low), max.max(high));
+        }
+        let space = Space::new(min, max);
+        let surfaces = Surfaces::new(scene, flat, space, effects.textures)?;
+        let accel = TraceScene::new(surfaces.triangles())?;
+        let world = Sphere { centre: Vec3::ZERO, radius: space.to_bake(max).length() * WORLD_MARGIN };
+        let emitters = Emitters::new(scene, &surfaces, space, world, effects.sky)?;
+        Ok(Self { space, surfaces, accel, emitters })
+    }
+}
+
+/// Bounds of all triangles in world space \[m\]; `None` without triangles, or if a position is not a number.
+pub(crate) fn bounds(flat: &FlatScene) -> Option<(DVec3, DVec3)> {
+    let mut bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for position in flat.triangles.iter().flatten().filter_map(|&i| flat.positions.get(i as usize)) {
+        let world = flat.origin + position.as_dvec3();
+        bounds = (bounds.0.min(world), bounds.1.max(world));
+    }
+    (bounds.0.is_finite() && bounds.1.is_finite()).then_some(bounds)
+}

@@ -1,0 +1,77 @@
+//! Work on several threads whose result does not depend on how many there are.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use crate::{BakeError, Monitor};
+
+/// Threads to work on, and who watches.
+#[derive(Clone, Copy)]
+pub(crate) struct Workers<'a> {
+    pub(crate) threads: usize,
+    pub(crate) monitor: &'a dyn Monitor,
+    /// What a cancelled bake reports as asked for.
+    pub(crate) total_photons: u64,
+}
+
+/// Items that a thread takes at a time in [`map`].
+const BATCH: usize = 32;
+
+impl Workers<'_> {
+    /// Runs `work` on every thread. It asks for pieces of 0..`pieces` through the function it is given, until there is
+    /// none left or the monitor cancels; each piece is handed out once.
+    ///
+    /// # Errors
+    ///
+    /// [`BakeError::Cancelled`], with `done` as it stands then.
+    pub(crate) fn run(
+        &self,
+        pieces: u64,
+        done: &AtomicU64,
+        work: impl Fn(&dyn Fn() -> Option<u64>) + Sync,
+    ) -> Result<(), BakeError> {
+        let next = AtomicU64::new(0);
+        let cancelled = AtomicBool::new(false);
+        let take = || {
+            if self.monitor.cancelled() {
+                cancelled.store(true, Ordering::Relaxed);
+            }
+            let piece = next.fetch_add(1, Ordering::Relaxed);
+            (piece < pieces && !cancelled.load(Ordering::Relaxed)).then_some(piece)
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..self.threads {
+                scope.spawn(|| work(&take));
+            }
+            work(&take);
+        });
+        if cancelled.into_inner() {
+            let done = done.load(Ordering::Relaxed);
+            return Err(BakeError::Cancelled { done, total: self.total_photons });
+        }
+        Ok(())
+    }
+}
+
+/// `function` of every index below `count`, in order.
+///
+/// # Errors
+///
+/// [`BakeError::Cancelled`].
+pub(crate) fn map<T: Send>(
+    workers: &Workers<'_>,
+    count: usize,
+    function: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, BakeError> {
+    let parts: Mutex<Vec<(u64, Vec<T>)>> = Mutex::new(Vec::new());
+    workers.run(count.div_ceil(BATCH) as u64, &AtomicU64::new(0), |take| {
+        while let Some(piece) = take() {
+            let first = piece as usize * BATCH;
+            let part = (first..(first + BATCH).min(count)).map(&function).collect();
+            parts.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((piece, part));
+        }
+    })?;
+    let mut parts = parts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    parts.sort_by_key(|(piece, _)| *piece);
+    Ok(parts.into_iter().flat_map(|(_, part)| part).collect())
+}
