@@ -15,6 +15,10 @@ pub enum GridError {
     },
     /// The lattice breaks a rule of its own.
     Lattice(ivg_format::LatticeError),
+    /// The bytes are no sound .ivg file, or end too early.
+    Format(ivg_format::Error),
+    /// A record belongs to a grid with another lattice.
+    OtherLattice,
     /// An array does not have one element a vertex.
     Length {
         /// Name of the array.
@@ -35,6 +39,10 @@ impl fmt::Display for GridError {
                  coarser grid"
             ),
             Self::Lattice(error) => error.fmt(f),
+            Self::Format(error) => error.fmt(f),
+            Self::OtherLattice => f.write_str(
+                "the record belongs to a file with another lattice; start again with that file's header",
+            ),
             Self::Length { array, found, vertices } => {
                 write!(f, "the array of {array} has {found} elements; the lattice has {vertices} vertices")
             }
@@ -46,6 +54,7 @@ impl std::error::Error for GridError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Lattice(error) => Some(error),
+            Self::Format(error) => Some(error),
             _ => None,
         }
     }
@@ -54,5 +63,11 @@ impl std::error::Error for GridError {
 impl From<ivg_format::LatticeError> for GridError {
     fn from(error: ivg_format::LatticeError) -> Self {
         Self::Lattice(error)
+    }
+}
+
+impl From<ivg_format::Error> for GridError {
+    fn from(error: ivg_format::Error) -> Self {
+        Self::Format(error)
     }
 }

@@ -1,15 +1,8 @@
 //! The dense grid in memory: what is known about every vertex of a lattice.
 
-use ivg_format::Lattice;
+use ivg_format::{HemisphereVectors, Lattice};
 
 use crate::GridError;
-
-/// Six irradiance vectors of one vertex: `[hemisphere][rgb][xyz]` \[W/m²\].
-///
-/// Hemispheres in the order +x −x +y −y +z −z, channels linear RGB. The vector of hemisphere d is the integral of
-/// radiance times direction over the directions w with w·d > 0 (Web3D 2008, equation 1), so its component along d
-/// is never negative.
-pub type HemisphereVectors = [[[f32; 3]; 3]; 6];
 
 /// Vertices that a grid may have unless the caller allows another number: 256³, which take 3.7 GB.
 pub const DEFAULT_MAX_VERTICES: u64 = 1 << 24;
@@ -88,7 +81,9 @@ impl IrradianceGrid {
         let mut received = BitSet::new(count);
         (0..count).for_each(|index| received.insert(index));
         let invalid_count = validity.iter().filter(|&&validity| validity == 0).count();
-        let blocked_edges: Vec<u8> = blocked_edges.into_iter().map(|bits| bits & BLOCKED_BITS).collect();
+        let edges = blocked_edges.into_iter().enumerate();
+        let blocked_edges: Vec<u8> =
+            edges.map(|(index, bits)| bits & existing_edges(&lattice, index)).collect();
         let blocked_count = blocked_edges.iter().map(|bits| bits.count_ones() as usize).sum();
         Ok(Self {
             lattice,
@@ -216,13 +211,14 @@ impl IrradianceGrid {
         self.invalid_count = self.invalid_count + usize::from(validity == 0) - usize::from(before == 0);
     }
 
-    /// Sets which edges of a vertex geometry cuts: bits 0, 1, 2 for the +x, +y, +z neighbour; other bits are dropped.
+    /// Sets which edges of a vertex geometry cuts: bits 0, 1, 2 for the +x, +y, +z neighbour. Bits of neighbours that
+    /// the lattice does not have are dropped, and all others.
     ///
     /// # Panics
     ///
     /// If `index` is not less than the number of vertices.
     pub fn set_blocked_edges(&mut self, index: usize, bits: u8) {
-        let bits = bits & BLOCKED_BITS;
+        let bits = bits & existing_edges(&self.lattice, index);
         let before = std::mem::replace(&mut self.blocked_edges[index], bits);
         self.blocked_count = self.blocked_count + bits.count_ones() as usize - before.count_ones() as usize;
     }
@@ -269,6 +265,12 @@ fn checked_vertices(lattice: &Lattice, limit: u64) -> Result<usize, GridError> {
         Ok(count) if vertices <= limit => Ok(count),
         _ => Err(GridError::TooManyVertices { vertices, limit }),
     }
+}
+
+/// The bits of those neighbours of a vertex in +x, +y, +z that the lattice has.
+fn existing_edges(lattice: &Lattice, index: usize) -> u8 {
+    let at = lattice.coords(index as u64);
+    (0..3).filter(|&axis| at[axis] + 1 < lattice.dims[axis]).fold(0, |bits, axis| bits | 1 << axis)
 }
 
 fn check_length(array: &'static str, found: usize, vertices: usize) -> Result<(), GridError> {

@@ -5,11 +5,45 @@
 //! whether it was *received*, whether light reaches it (*validity*), and whether geometry cuts the way to its
 //! neighbours (*blocked edges*).
 //!
+//! ```text
+//! decoder events ─ accept ─► IrradianceGrid ─ fill ─► every vertex valued ─ irradiance(p, n) ─► W/m²
+//!      baker ─ from_parts ─►      │                          └─ texture_layer(t) ─► GPU
+//!                                 └─ as_source ─► encoder
+//! ```
+//!
+//! A client that has received one vertex of eight shows a picture already:
+//!
+//! ```
+//! use glam::{DVec3, Vec3};
+//! use ivg_format::Lattice;
+//! use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction, SpatialFilter, fill};
+//!
+//! let mut grid = IrradianceGrid::new(Lattice::new([2, 2, 2], [0.0; 3], [1.0; 3])?)?;
+//! // Light from above: 2 W/m² on a surface that faces +y.
+//! let mut vectors = [[[0.0; 3]; 3]; 6];
+//! vectors[2] = [[0.0, 2.0, 0.0]; 3];
+//! grid.set(5, &vectors);
+//!
+//! let filled = fill(&grid, &FillOptions::default());
+//! let p = DVec3::new(0.1, 0.2, 0.3);
+//! let light = filled.irradiance(p, Vec3::Y, Reconstruction::ThreeVector, SpatialFilter::Trilinear);
+//! assert!((light - Vec3::splat(2.0)).abs().max_element() < 1e-5);
+//! assert_eq!(filled.irradiance(p, Vec3::NEG_Y, Reconstruction::ThreeVector, SpatialFilter::Trilinear), Vec3::ZERO);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! World space is right-handed, in metres; colours are linear RGB with Rec. 709 primaries; an irradiance vector
-//! points towards where the light comes from and has the unit W/m².
+//! points towards where the light comes from and has the unit W/m² (or lux, if the file says so).
+//!
+//! Guarantees: the same grid gives the same bits whatever the order in which its vertices arrived; received vectors
+//! are never altered; filled values and interpolated ones stay in the range of those that they come from; light that
+//! geometry keeps apart is never mixed while another vertex can answer.
+//!
+//! Features: `cases` adds the hard cases that tests and stability reports run; it never changes results.
 
 #![forbid(unsafe_code)]
 
+mod assemble;
 #[cfg(any(test, feature = "cases"))]
 pub mod cases;
 mod error;
@@ -25,7 +59,8 @@ mod texture;
 
 pub use error::GridError;
 pub use fill::{FillOptions, fill};
-pub use grid::{BLOCKED_BITS, DEFAULT_MAX_VERTICES, HemisphereVectors, IrradianceGrid, VALIDITY_FREE};
+pub use grid::{BLOCKED_BITS, DEFAULT_MAX_VERTICES, IrradianceGrid, VALIDITY_FREE};
+pub use ivg_format::HemisphereVectors;
 pub use lookup::SURFACE_BIAS;
 pub use metrics::{IrradianceError, relative_rmse};
 pub use reconstruct::{Reconstruction, TANGENTIAL_SHARE, reconstruct, reconstruct_signed, three_vector};

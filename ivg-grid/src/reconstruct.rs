@@ -18,6 +18,7 @@
 //! floating-point ones. `cargo run -p ivg-grid --release --example reconstruction_error` prints how far each is off.
 
 use glam::Vec3;
+use ivg_format::Encoding;
 
 use crate::HemisphereVectors;
 
@@ -57,6 +58,16 @@ impl Reconstruction {
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+
+    /// The most accurate formula for what an encoding stores: six vectors where every channel has its own, three where
+    /// the channels share a direction, which costs the six-vector form more than it gains.
+    #[must_use]
+    pub fn for_encoding(encoding: Encoding) -> Self {
+        match encoding {
+            Encoding::VectorsF32 => Self::SixVector,
+            _ => Self::ThreeVector,
+        }
     }
 
     /// Whether the formula reads a hemisphere's vectors for a surface with normal `n`.

@@ -240,10 +240,8 @@ impl Support {
 
     /// Whether light passes from a local vertex to the next one along an axis.
     fn is_open(&self, grid: &IrradianceGrid, low: usize, axis: usize) -> bool {
-        let at = self.split(low)[axis];
-        // Beyond the border the same vertex is repeated.
-        self.coords[axis][at] == self.coords[axis][at + 1]
-            || grid.blocked_edges()[self.vertex(low)] >> axis & 1 == 0
+        // Beyond the border the border vertex is repeated; it has no blocked edge outwards.
+        grid.blocked_edges()[self.vertex(low)] >> axis & 1 == 0
     }
 
     /// The usable corners of the cell that lie on the lookup's side: step 2 of the module's rule.

@@ -50,7 +50,8 @@ fn parts_of_another_length_are_refused_by_name() {
     };
     let grid = parts(4, 4, 4).expect("fits");
     assert_eq!(grid.received_count(), 4);
-    assert_eq!(grid.blocked_edges(), [BLOCKED_BITS; 4]);
+    assert_eq!(grid.blocked_edges(), [0b011, 0b010, 0b001, 0], "edges that leave the lattice are dropped");
+    assert_eq!(grid.blocked_edge_count(), 4);
     assert_eq!(parts(4, 3, 4), Err(GridError::Length { array: "validity", found: 3, vertices: 4 }));
     assert!(matches!(parts(5, 4, 4), Err(GridError::Length { array: "irradiance vectors", .. })));
     assert!(matches!(parts(4, 4, 0), Err(GridError::Length { array: "blocked edges", .. })));
@@ -79,7 +80,7 @@ fn counts_follow_every_change() {
     }
     grid.set_validity(4, 255);
     for (bits, blocked) in [(0b111, 3), (0b101, 2), (0b1111_1000, 0), (0b010, 1)] {
-        grid.set_blocked_edges(9, bits);
+        grid.set_blocked_edges(0, bits);
         assert_eq!(grid.blocked_edge_count(), blocked);
         assert_eq!(grid.is_unobstructed(), blocked == 0);
     }

@@ -73,6 +73,8 @@ fn names_are_unique_and_read_back() {
         assert_eq!(Reconstruction::from_name(method.name()), Some(method));
     }
     assert_eq!(Reconstruction::from_name("auto"), None);
+    assert_eq!(Reconstruction::for_encoding(Encoding::VectorsF32), Reconstruction::SixVector);
+    assert_eq!(Reconstruction::for_encoding(Encoding::PackedOct24), Reconstruction::ThreeVector);
 }
 
 #[test]

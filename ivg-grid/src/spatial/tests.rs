@@ -303,19 +303,3 @@ fn an_axis_of_one_vertex_is_constant_along_it() {
         assert_eq!(lookup(&grid, at(-7.0, 1.5, 9.0), Some(Vec3::X), filter), middle);
     }
 }
-
-#[test]
-fn bits_of_edges_that_leave_the_lattice_mean_nothing() {
-    // The B-spline repeats the border vertex; that the border vertex has no neighbour is no wall.
-    let open = grid_of([3, 2, 2], |[i, ..]| f32::from(i));
-    let mut marked = open.clone();
-    [2, 5, 8, 11].into_iter().for_each(|index| marked.set_blocked_edges(index, 0b001));
-    for x in [1.2, 1.9, 2.0] {
-        let p = at(x, 0.5, 0.5);
-        let (a, b) = (
-            open.vectors_at(p, None, SpatialFilter::Tricubic),
-            marked.vectors_at(p, None, SpatialFilter::Tricubic),
-        );
-        assert_eq!(a, b, "at {x}");
-    }
-}

@@ -1,0 +1,98 @@
+//! Between the file format and the grid: decoder events into vertices, and a grid as something to encode.
+
+use ivg_format::{Event, GridSource, Header, Limits, decode_all};
+
+use crate::{GridError, IrradianceGrid, VALIDITY_FREE};
+
+impl IrradianceGrid {
+    /// Takes over what an event brings: the vectors of a bundle or of the corners, or a block of validity and blocked
+    /// edges. Other events bring nothing; a header is only compared.
+    ///
+    /// Events may come in any order, as records fetched one by one do. A record that comes again replaces the first:
+    /// who mixes generations of a record accepts the newest last.
+    ///
+    /// # Errors
+    ///
+    /// [`GridError::OtherLattice`] if the event belongs to a file with another lattice. The grid is as before then.
+    pub fn accept(&mut self, event: &Event<'_>) -> Result<(), GridError> {
+        match event {
+            Event::Header(header) => self.check_lattice(header),
+            Event::Corners(bundle) | Event::Bundle(bundle) => {
+                self.check_lattice(bundle.header())?;
+                for (vertex, vectors) in bundle.iter() {
+                    self.set(address(vertex), &vectors);
+                }
+                Ok(())
+            }
+            Event::Validity(block) => {
+                let first = address(block.first_vertex());
+                if first.saturating_add(block.len()) > self.vertex_count() {
+                    return Err(GridError::OtherLattice);
+                }
+                for (n, &validity) in block.validity().iter().enumerate() {
+                    self.set_validity(first + n, validity);
+                    self.set_blocked_edges(first + n, block.blocked_edges(n));
+                }
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The grid in a whole file, and the file's header.
+    ///
+    /// Allocates 219 bytes a vertex, and that only once the file is seen to be as long as its header says: at most
+    /// six times the length of `bytes`.
+    ///
+    /// # Errors
+    ///
+    /// [`GridError::Format`] with what is wrong with the file (its end missing included), and
+    /// [`GridError::TooManyVertices`] beyond [`Limits::vertices`].
+    pub fn from_file(bytes: &[u8], limits: &Limits) -> Result<(Self, Header), GridError> {
+        let mut whole: Option<Result<(Self, Header), GridError>> = None;
+        let decoded = decode_all(bytes, limits, |event| match &mut whole {
+            None => {
+                if let Event::Header(header) = event
+                    && header.file_bytes <= bytes.len() as u64
+                {
+                    whole =
+                        Some(Self::with_limit(header.lattice, limits.vertices).map(|grid| (grid, *header)));
+                }
+            }
+            Some(Ok((grid, _))) => {
+                if let Err(error) = grid.accept(&event) {
+                    whole = Some(Err(error));
+                }
+            }
+            Some(Err(_)) => {}
+        });
+        decoded.map_err(GridError::Format)?;
+        // A file that decodes has a header and is as long as it says.
+        whole.unwrap_or(Err(GridError::OtherLattice))
+    }
+
+    /// The grid as something to encode, without lights and metadata. Without a validity section where every vertex is
+    /// free and no edge is blocked.
+    ///
+    /// Vertices without a value are written as darkness: a file has no missing ones.
+    #[must_use]
+    pub fn as_source(&self) -> GridSource<'_> {
+        let mut source = GridSource::new(*self.lattice(), self.vectors());
+        source.validity =
+            self.validity().iter().any(|&validity| validity != VALIDITY_FREE).then(|| self.validity());
+        source.blocked_edges = (self.blocked_edge_count() > 0).then(|| self.blocked_edges());
+        source
+    }
+
+    fn check_lattice(&self, header: &Header) -> Result<(), GridError> {
+        if header.lattice == *self.lattice() { Ok(()) } else { Err(GridError::OtherLattice) }
+    }
+}
+
+/// The place of a vertex in memory. A lattice that fits has only such.
+fn address(vertex: u64) -> usize {
+    usize::try_from(vertex).unwrap_or(usize::MAX)
+}
+
+#[cfg(test)]
+mod tests;
