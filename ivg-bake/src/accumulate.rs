@@ -54,17 +54,6 @@ impl Sums for Shared<'_> {
     }
 }
 
-/// Deposits that go nowhere: for measuring what tracing costs without them.
-#[derive(Debug, Default)]
-pub(crate) struct Discarded(pub(crate) f32);
-
-impl Sums for Discarded {
-    #[inline]
-    fn add(&mut self, _bucket: usize, quanta: &[f32; NUMBERS]) {
-        self.0 += quanta[0];
-    }
-}
-
 /// All sums of a bake, kept once a thread or once for all.
 #[derive(Debug)]
 pub(crate) enum Store {

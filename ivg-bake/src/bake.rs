@@ -195,6 +195,7 @@ fn last_vertex(lattice: &Lattice) -> [f64; 3] {
 #[derive(Debug)]
 pub(crate) struct Traced {
     sums: Vec<i64>,
+    /// Where the energy went.
     pub(crate) books: Books,
 }
 

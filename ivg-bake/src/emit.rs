@@ -145,6 +145,11 @@ impl Emitters {
         self.total
     }
 
+    /// Share of the photons that come from the sky, in [0, 1].
+    pub(crate) fn sky_share(&self) -> f64 {
+        1.0 - self.placed_power / self.total
+    }
+
     /// Radiance of the sky that is simulated \[W/(m² sr)\].
     pub(crate) fn sky(&self) -> Vec3 {
         self.sky

@@ -52,8 +52,6 @@ const FULL_SHARE: u32 = SUB_CELLS / 8;
 pub(crate) struct Surroundings {
     /// What counts in each dual cell.
     pub(crate) regions: Regions,
-    /// Where each vertex looks from, in bake space.
-    pub(crate) eyes: Vec<Vec3>,
     /// 0 = no light … 255 = full weight.
     pub(crate) validity: Vec<u8>,
     /// Bits 0, 1, 2: the edge to the +x, +y, +z neighbour is blocked.
@@ -109,7 +107,7 @@ impl Surroundings {
             }
             bits
         })?;
-        Ok(Self { regions, eyes, validity, blocked_edges })
+        Ok(Self { regions, validity, blocked_edges })
     }
 
     /// Surroundings in which everything counts: what RR-6983 assumes.
@@ -117,7 +115,6 @@ impl Surroundings {
         let vertices = cells.len();
         Self {
             regions: Regions::new((0..vertices).map(|_| None)),
-            eyes: (0..vertices).map(|vertex| cells.middle(cells.coords(vertex))).collect(),
             validity: vec![255; vertices],
             blocked_edges: vec![0; vertices],
         }
