@@ -27,6 +27,8 @@ pub mod compare;
 mod cpu;
 mod error;
 mod geometry;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod image;
 pub mod layout;
 pub mod lights;
@@ -35,10 +37,13 @@ pub mod plan;
 pub mod png;
 mod scene;
 pub mod tonemap;
+pub mod upload;
 
 pub use cpu::{execute as execute_cpu, render_cpu};
 pub use error::{MAX_SIDE, RenderError};
 pub use geometry::{Draw, Geometry};
+#[cfg(feature = "gpu")]
+pub use gpu::{GpuError, GpuRenderer, INSTALL_SOFTWARE_ADAPTER};
 pub use image::{DisplayImage, Image};
 pub use options::RenderOptions;
 pub use scene::{RenderMesh, RenderScene};

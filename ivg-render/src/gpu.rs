@@ -1,0 +1,88 @@
+//! The renderer on a GPU: carries out a [`FramePlan`] through wgpu, headless. All wgpu code is in this module.
+//!
+//! WebGPU's default limits suffice; what a scene needs beyond them is a [`GpuError::Limit`] before anything is
+//! allocated. The shader modules are the files of `shaders/` put together, so constants and structures have one home.
+
+mod device;
+mod execute;
+mod pipelines;
+mod resources;
+
+use crate::plan::FramePlan;
+use crate::{Image, RenderError, RenderOptions, RenderScene};
+use pipelines::Pipelines;
+
+/// What to install when a machine has no GPU that wgpu can use: Mesa's software Vulkan.
+pub const INSTALL_SOFTWARE_ADAPTER: &str =
+    "apt-get install -y --no-install-recommends mesa-vulkan-drivers libvulkan1";
+
+/// Why a picture could not be made on a GPU.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// No GPU, nor a software one.
+    #[error("no adapter for wgpu: {0}; a software one on Debian: {INSTALL_SOFTWARE_ADAPTER}")]
+    NoAdapter(String),
+    /// The scene itself is at fault.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The scene needs more than every WebGPU device has; the CPU renderer has no such limit.
+    #[error("{what}: {needed} needed, {limit} available; render on the CPU or use less")]
+    Limit {
+        /// What there is too little of.
+        what: &'static str,
+        /// How much is needed.
+        needed: u64,
+        /// How much there is.
+        limit: u64,
+    },
+    /// The device failed or ran out of memory.
+    #[error("the GPU failed: {0}")]
+    Device(String),
+}
+
+/// A GPU with the pipelines of the renderer; renders any number of scenes.
+#[derive(Debug)]
+pub struct GpuRenderer {
+    adapter_name: String,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    pipelines: Pipelines,
+}
+
+impl GpuRenderer {
+    /// Opens the fastest adapter; a software one if there is no other.
+    ///
+    /// # Errors
+    ///
+    /// [`GpuError::NoAdapter`] if there is none, [`GpuError::Device`] if it cannot be opened.
+    pub fn new() -> Result<Self, GpuError> {
+        let (adapter_name, device, queue) = device::open()?;
+        let pipelines = device::checked(&device, || Ok(Pipelines::new(&device)))?;
+        Ok(Self { adapter_name, device, queue, pipelines })
+    }
+
+    /// Name of the adapter, as its driver gives it.
+    #[must_use]
+    pub fn adapter_name(&self) -> &str {
+        &self.adapter_name
+    }
+
+    /// Renders a scene: the picture of [`render_cpu`](crate::render_cpu), up to rounding.
+    ///
+    /// # Errors
+    ///
+    /// [`GpuError::Render`], [`GpuError::Limit`] or [`GpuError::Device`].
+    pub fn render(&self, scene: &RenderScene, options: &RenderOptions) -> Result<Image, GpuError> {
+        self.execute(&FramePlan::new(scene, options)?)
+    }
+
+    /// Carries out a plan.
+    ///
+    /// # Errors
+    ///
+    /// [`GpuError::Limit`] or [`GpuError::Device`].
+    pub fn execute(&self, plan: &FramePlan<'_>) -> Result<Image, GpuError> {
+        device::checked(&self.device, || execute::frame(&self.device, &self.queue, &self.pipelines, plan))
+    }
+}
