@@ -1,3 +1,4 @@
+extern crate std;
 use super::*;
 use crate::Verdict;
 use alloc::vec::Vec;
@@ -131,4 +132,27 @@ quickcheck! {
         let _ = read(&bytes);
         true
     }
+}
+
+/// Name, offset and size of a field in the rows of a table of `spec/tables/common.toml`.
+fn spec_fields(key: &str) -> Vec<(std::string::String, u64)> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/tables/common.toml");
+    let table: toml::Table = std::fs::read_to_string(path).unwrap().parse().unwrap();
+    let rows = table[key].as_array().unwrap();
+    rows.iter()
+        .map(|row| (row["name"].as_str().unwrap().into(), row["offset"].as_integer().unwrap() as u64))
+        .collect()
+}
+
+#[test]
+fn every_field_lies_where_the_specification_says() {
+    macro_rules! fields {
+        ($($field:ident)*) => { [$((stringify!($field), offset_of!(Wire, $field) as u64)),*] };
+    }
+    let ours = fields! {
+        magic major minor required_features optional_features header_bytes reserved header_crc content_id
+        data_offset file_bytes
+    };
+    let spec = spec_fields("header");
+    assert!(spec.iter().map(|(name, at)| (name.as_str(), *at)).eq(ours), "{spec:?}");
 }
