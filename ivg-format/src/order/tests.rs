@@ -50,7 +50,8 @@ fn check(dims: [u16; 3], per_slice: u32, seed: u64) {
 fn every_vertex_comes_exactly_once_on_awkward_lattices() {
     let all: Vec<[u16; 3]> =
         (1..=5).flat_map(|x| (1..=4).flat_map(move |y| (1..=4).map(move |z| [x, y, z]))).collect();
-    for dims in all.into_iter().chain([[1, 17, 3], [2, 2, 40], [33, 1, 1], [1, 1, 9], [8, 8, 8], [3, 19, 20]]) {
+    for dims in all.into_iter().chain([[1, 17, 3], [2, 2, 40], [33, 1, 1], [1, 1, 9], [8, 8, 8], [3, 19, 20]])
+    {
         for per_slice in [1, 2, 3, 5, 64, u32::MAX] {
             check(dims, per_slice, 42);
         }

@@ -4,7 +4,7 @@
 //! A code is `(u + 2047) | (v + 2047) << 12` with −2047 ≤ u, v ≤ 2047; a half of 4095 is forbidden
 //! (IVG-DIR-02). The scale 2047 is odd so that 0 and both ends exist: the six axes are exact. Decoding is
 //! pinned bit by bit (IVG-DIR-03): fold in integers, then the binary32 number nearest to the exact quotient.
-//! Encoding finds the nearest code; the angle to it is at most 0.06°.
+//! Encoding finds the nearest code; the angle to it is at most √2/2047 rad, 0.0396°.
 
 /// Largest magnitude of a coordinate.
 const SCALE: i32 = 2047;
@@ -53,11 +53,19 @@ fn nearest(vector: [f64; 3], place: [f64; 3], allowed: impl Fn(&[i32; 3]) -> boo
             let [a, b, c] = folded.map(f64::from);
             let cosine = (a * goal[0] + b * goal[1] + c * goal[2]) / libm::sqrt(a * a + b * b + c * c);
             if best.is_none_or(|(most, _)| cosine > most) {
-                best = Some((cosine, ((u + SCALE) as u32) | ((v + SCALE) as u32) << 12));
+                best = Some((cosine, lowest_code(u, v)));
             }
         }
     }
     best.map(|(_, code)| code)
+}
+
+/// The lowest code of the direction at (u, v): on the rim of the map, places mirrored in its middle are one
+/// direction, and all four corners are −z.
+const fn lowest_code(u: i32, v: i32) -> u32 {
+    let low_u = if v.abs() == SCALE { -u.abs() } else { u };
+    let low_v = if u.abs() == SCALE { -v.abs() } else { v };
+    (low_u + SCALE) as u32 | ((low_v + SCALE) as u32) << 12
 }
 
 /// The vector divided by its largest magnitude, so that no square can overflow or vanish.

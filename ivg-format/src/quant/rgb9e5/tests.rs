@@ -81,7 +81,8 @@ fn naive(colour: [f32; 3]) -> [u32; 4] {
     let most = clamped.iter().fold(0.0f64, |a, &b| a.max(b));
     let preliminary = if most == 0.0 { -16 } else { (most.log2().floor() as i32).max(-16) } + 16;
     let step = |e: i32| (f64::from(e) - 24.0).exp2();
-    let exponent = if (most / step(preliminary) + 0.5).floor() == 512.0 { preliminary + 1 } else { preliminary };
+    let exponent =
+        if (most / step(preliminary) + 0.5).floor() == 512.0 { preliminary + 1 } else { preliminary };
     let [r, g, b] = clamped.map(|c| (c / step(exponent) + 0.5).floor() as u32);
     [r, g, b, exponent as u32]
 }
