@@ -1,24 +1,15 @@
 //! Push-pull: values for the vertices that have not arrived (Web3D 2008, section 4.1).
 //!
 //! *Pull*: going up the [pyramid](crate::pyramid), a node gets the mean of its children that have a value. Weights
-//! saturate at 1 (Gortler et al., The Lumigraph, 1996, section 3.4): one received vertex makes a node fully known, so
-//! that it does not matter how densely a region has been received. *Push*: going down, a node without a value of its
-//! own gets one interpolated from the coarser level, three quarters of the way from its parent's middle to the
-//! neighbour's on each axis. The optional *smoothing* after each push step replaces what was pushed by the mean of it
+//! saturate at 1 (Gortler et al., The Lumigraph, 1996): one received vertex makes a node fully known, so that it does
+//! not matter how densely a region has been received. *Push*: going down, a node without a value of its own gets one
+//! interpolated from the coarser level, where it lies a quarter of a step from its parent on each axis. The optional *smoothing* after each push step replaces what was pushed by the mean of it
 //! (weight 6) and its six neighbours (weight 1 each).
 //!
 //! Nothing crosses an invalid vertex or a blocked edge as long as the received vertices reach the place some other
 //! way. What they do not reach (invalid vertices, rooms of which nothing has arrived) is filled in a second run
 //! through a pyramid without obstructions: a guess, better than darkness, that lookups use only when no corner of a
 //! cell is reachable.
-//!
-//! Guarantees:
-//! - received vectors of valid vertices come out bit for bit;
-//! - the result depends on which vertices were received, not on their order: every node is computed from all its
-//!   children, or its coarser neighbours, in order of their numbers;
-//! - each component of a filled vector lies between the smallest and the largest received one: every value is a mean,
-//!   and [`Mean`] cannot leave the range by rounding;
-//! - with nothing received from a valid vertex, all values are zero.
 //!
 //! Time and memory are proportional to the number of vertices.
 
@@ -42,6 +33,14 @@ impl Default for FillOptions {
 /// The same grid with a value at every vertex: received vertices as they are, all others by push-pull.
 ///
 /// What arrived for an invalid vertex is not light and is replaced too; the given grid keeps it.
+///
+/// Guarantees:
+/// - received vectors of valid vertices come out bit for bit;
+/// - the result depends on which vertices were received, not on their order: every node is computed from all its
+///   children, or its coarser neighbours, in order of their numbers;
+/// - each component of a filled vector lies between the smallest and the largest received one: every value is a
+///   mean that cannot leave the range by rounding;
+/// - with nothing received from a valid vertex, all values are zero.
 #[must_use]
 pub fn fill(grid: &IrradianceGrid, options: &FillOptions) -> IrradianceGrid {
     let mut vectors = grid.vectors().to_vec();
@@ -160,7 +159,7 @@ struct Stencil {
 }
 
 impl Stencil {
-    /// The value at a child of `parent` that lies a quarter of a cell from its middle in the `outward` directions.
+    /// The value at a child of `parent`, a quarter of a step from it in each of the `outward` directions.
     fn interpolate(
         &mut self,
         level: &Level,
@@ -181,7 +180,7 @@ impl Stencil {
             let nodes = &mut self.reached[corner];
             nodes.sort_unstable();
             nodes.dedup();
-            // 3/4 of the way along each axis stays with the parent, 1/4 goes to the neighbour: 27, 9, 3, 1 of 64.
+            // On each axis 3/4 of the weight is the parent's, 1/4 the neighbour's: 27, 9, 3, 1 of 64.
             let weight = 3.0_f32.powi(3 - corner.count_ones().cast_signed());
             for &node in nodes.iter() {
                 mean.add(&vectors[node as usize], weight / nodes.len() as f32);

@@ -55,7 +55,7 @@ mod metrics;
 mod pyramid;
 mod reconstruct;
 pub mod spatial;
-mod texture;
+pub mod texture;
 
 pub use error::GridError;
 pub use fill::{FillOptions, fill};

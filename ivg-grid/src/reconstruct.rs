@@ -1,21 +1,4 @@
 //! From the six irradiance vectors of a point to the irradiance of a surface with a given normal.
-//!
-//! Three formulas for the irradiance E(n) \[W/m²\] of one colour channel; `s_i` is the sign of `n_i`, `I_i` the vector
-//! of the hemisphere around `s_i e_i`, `I_±i` both hemispheres of axis i, and `[j]` a component:
-//!
-//! | | formula, before max(0, ·) | vectors read |
-//! |---|---|---|
-//! | [`NSquared`](Reconstruction::NSquared) | `Σ_i n_i² (I_i · n)` | 3 |
-//! | [`ThreeVector`](Reconstruction::ThreeVector) | `Σ_i n_i² (s_i I_i[i] + t Σ_{j≠i} n_j I_i[j])`, t = 0.7 | 3 |
-//! | [`SixVector`](Reconstruction::SixVector) | `½ [Σ_j n_j V_j + Σ_j n_j² A_j[j] + ½ Σ_{j≠k} n_j n_k A_j[k]]`, `V_j = (I_+j + I_-j)[j]`, `A_j = I_+j − I_-j` | 6 |
-//!
-//! All three are exact for normals along the axes and continuous in the normal. The first is what both papers print
-//! (Web3D 2008, section 3.2); it loses light between the axes: under uniform radiance L it gives
-//! `π L (|n_x|³ + |n_y|³ + |n_z|³)` instead of `π L`, a quarter too little on average and 42 % on the diagonal. The
-//! other two are exact in uniform light. The third is exact for all radiance band-limited to spherical harmonics of
-//! degree 2, but suffers more when the three channels of a vector share one direction: hence
-//! [`ThreeVector`](Reconstruction::ThreeVector) for packed vectors, [`SixVector`](Reconstruction::SixVector) for
-//! floating-point ones. `cargo run -p ivg-grid --release --example reconstruction_error` prints how far each is off.
 
 use glam::Vec3;
 use ivg_format::Encoding;
@@ -24,11 +7,28 @@ use crate::HemisphereVectors;
 
 /// How much of the tangential components [`Reconstruction::ThreeVector`] counts.
 ///
-/// 1 would be right for light that lies in all three hemispheres read, 0 for light that lies in one only. 0.7 was
-/// fitted to indirect light of several lobes; the example `reconstruction_error` prints the error beside 0.6 and 0.8.
+/// Uniform light and the axes are exact for any share; 0.7 has the smallest error in broad light and in light of
+/// several lobes. The example `reconstruction_error` prints the error beside those of 0.6 and 0.8.
 pub const TANGENTIAL_SHARE: f32 = 0.7;
 
 /// A formula for the irradiance of a surface from the six irradiance vectors at its point.
+///
+/// They give the irradiance E(n) \[W/m²\] of one colour channel; `s_i` is the sign of `n_i`, `I_i` the vector
+/// of the hemisphere around `s_i e_i`, `I_±i` both hemispheres of axis i, and `[j]` a component:
+///
+/// | | formula, before max(0, ·) | vectors read |
+/// |---|---|---|
+/// | [`NSquared`](Self::NSquared) | `Σ_i n_i² (I_i · n)` | 3 |
+/// | [`ThreeVector`](Self::ThreeVector) | `Σ_i n_i² (s_i I_i[i] + t Σ_{j≠i} n_j I_i[j])`, t = 0.7 | 3 |
+/// | [`SixVector`](Self::SixVector) | `½ [Σ_j n_j V_j + Σ_j n_j² A_j[j] + ½ Σ_{j≠k} n_j n_k A_j[k]]`, `V_j = (I_+j + I_-j)[j]`, `A_j = I_+j − I_-j` | 6 |
+///
+/// All three are exact for normals along the axes and continuous in the normal. The first is what both papers print
+/// (Web3D 2008, section 3.2); it loses light between the axes: under uniform radiance L it gives
+/// `π L (|n_x|³ + |n_y|³ + |n_z|³)` instead of `π L`, a quarter too little on average and 42 % on the diagonal. The
+/// other two are exact in uniform light. The third is exact for all radiance band-limited to spherical harmonics of
+/// degree 2, but suffers more when the three channels of a vector share one direction: hence
+/// [`ThreeVector`](Self::ThreeVector) for packed vectors, [`SixVector`](Self::SixVector) for floating-point ones.
+/// `cargo run -p ivg-grid --release --example reconstruction_error` prints how far each is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Reconstruction {
@@ -36,7 +36,7 @@ pub enum Reconstruction {
     NSquared,
     /// The same three vectors with the component along each axis taken whole: for packed vectors.
     ThreeVector,
-    /// All six vectors, the best quadratic form in the normal that they allow: for floating-point vectors.
+    /// All six vectors, in a quadratic form of the normal: for floating-point vectors.
     SixVector,
 }
 
