@@ -100,39 +100,44 @@ impl Boxes {
         }
         let mut at = [0usize; 3];
         let mut next = [f32::INFINITY; 3];
-        let mut stride = [f32::INFINITY; 3];
+        let mut stride = [0f32; 3];
+        let ahead = d.map(|x| if x > 0.0 { 1 } else { usize::MAX });
         for a in 0..3 {
             let position = o[a] + d[a] * from;
             // The cast saturates, so a position rounded below the lowest box lands in it.
             at[a] = (((position - self.low[a]) / self.step[a]) as usize).min(self.count[a] - 1);
             if d[a] != 0.0 {
-                let ahead = if d[a] > 0.0 { 1.0 } else { 0.0 };
-                next[a] = (self.low[a] + (at[a] as f32 + ahead) * self.step[a] - o[a]) * inverse[a];
+                let plane = at[a] as f32 + if d[a] > 0.0 { 1.0 } else { 0.0 };
+                next[a] = (self.low[a] + plane * self.step[a] - o[a]) * inverse[a];
                 stride[a] = self.step[a] * inverse[a].abs();
             }
         }
         let mut t = from;
+        let [mut next_x, mut next_y, mut next_z] = next;
         loop {
-            let axis = if next[0] < next[1] {
-                if next[0] < next[2] { 0 } else { 2 }
-            } else if next[1] < next[2] {
-                1
-            } else {
-                2
-            };
-            let end = next[axis].min(to);
+            // Which plane comes first is as good as random, so it is selected without a branch.
+            let x_first = (next_x < next_y) & (next_x < next_z);
+            let y_first = !x_first & (next_y < next_z);
+            let z_first = !(x_first | y_first);
+            let plane = next_x.min(next_y).min(next_z);
+            let end = plane.min(to);
             if end > t {
                 visit(at, t, end);
                 t = end;
             }
-            if next[axis] >= to {
+            if plane >= to {
                 return;
             }
-            at[axis] = if d[axis] > 0.0 { at[axis] + 1 } else { at[axis].wrapping_sub(1) };
-            if at[axis] >= self.count[axis] {
+            next_x += if x_first { stride[0] } else { 0.0 };
+            next_y += if y_first { stride[1] } else { 0.0 };
+            next_z += if z_first { stride[2] } else { 0.0 };
+            // Below the lowest box the coordinate wraps around, and is too large as well.
+            at[0] = at[0].wrapping_add(if x_first { ahead[0] } else { 0 });
+            at[1] = at[1].wrapping_add(if y_first { ahead[1] } else { 0 });
+            at[2] = at[2].wrapping_add(if z_first { ahead[2] } else { 0 });
+            if (at[0] >= self.count[0]) | (at[1] >= self.count[1]) | (at[2] >= self.count[2]) {
                 return;
             }
-            next[axis] += stride[axis];
         }
     }
 }

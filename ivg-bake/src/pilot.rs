@@ -35,7 +35,7 @@ pub struct PilotReport {
     /// Rays traced for each photon, of one that is followed to the end.
     pub flights_per_photon: f64,
     /// Energy that is in flight after k reflections, as a share of what the lights emit; entry 0 is 1.
-    pub energy_after_bounces: Vec<f64>,
+    pub energy_by_bounce: Vec<f64>,
     /// Reflections that the plan now follows.
     pub max_bounces: u32,
     /// Expected time of the bake before the first photon: acceleration structure, validity, visible regions
@@ -116,9 +116,9 @@ pub fn pilot(
         preparation_seconds,
         ray_seconds: ray_time * scale,
         deposit_seconds: (full_time - ray_time).max(0.0) * scale,
-        energy_after_bounces,
+        energy_by_bounce: energy_after_bounces,
     };
-    let in_flight: f64 = report.energy_after_bounces.iter().sum();
+    let in_flight: f64 = report.energy_by_bounce.iter().sum();
     let first_flights = report.ray_seconds / report.flights_per_photon;
     let sky_share = ready.stage.emitters.sky_share();
     let textures = if plan.needs(Effect::Textures) {

@@ -17,6 +17,11 @@ use crate::region::{Region, Regions};
 
 const OCTANTS: usize = 8;
 
+/// Stretches of a flight that are collected before they are added. Waiting for memory is most of the cost of a bake; many
+/// short additions in a row let the processor wait for several at once. For the same reason the buckets of an octant lie
+/// together: a flight stays in one octant.
+const STRETCHES: usize = 64;
+
 /// Roundings in cutting a flight can make a stretch this much longer than the diagonal.
 const DIAGONAL_MARGIN: f32 = 1.001;
 
@@ -48,6 +53,14 @@ impl Estimate for TrackLength<'_> {
         let octant = usize::from(towards.x < 0.0)
             | usize::from(towards.y < 0.0) << 1
             | usize::from(towards.z < 0.0) << 2;
+        let first = octant * self.cells.len();
+        let mut stretches = [(0usize, 0f32); STRETCHES];
+        let mut waiting = 0;
+        let mut add = |stretches: &[(usize, f32)]| {
+            for &(bucket, length) in stretches {
+                sums.add(bucket, &per_length.map(|number| number * length));
+            }
+        };
         self.cells.walk(flight.origin, flight.direction, 0.0, flight.length, |cell, from, to| {
             let index = self.cells.index(cell);
             let length = match self.regions.get(index) {
@@ -55,9 +68,15 @@ impl Estimate for TrackLength<'_> {
                 region => region.length(&self.cells, cell, flight.origin, flight.direction, from, to),
             };
             if length > 0.0 {
-                sums.add(index * OCTANTS + octant, &per_length.map(|number| number * length));
+                stretches[waiting] = (first + index, length);
+                waiting += 1;
+                if waiting == STRETCHES {
+                    add(&stretches);
+                    waiting = 0;
+                }
             }
         });
+        add(&stretches[..waiting]);
     }
 
     fn vectors(&self, sums: &[i64], vertex: usize, power: f64) -> HemisphereVectors {
@@ -66,14 +85,14 @@ impl Estimate for TrackLength<'_> {
             return HemisphereVectors::default();
         }
         let scale = power * self.quantum / (self.cells.volume() * share);
-        let octants = &sums[vertex * OCTANTS * NUMBERS..][..OCTANTS * NUMBERS];
+        let number = |octant: usize, n: usize| sums[(octant * self.cells.len() + vertex) * NUMBERS + n];
         core::array::from_fn(|hemisphere| {
             let (axis, negative) = (hemisphere / 2, hemisphere % 2);
             core::array::from_fn(|channel| {
                 core::array::from_fn(|component| {
                     let sum: i64 = (0..OCTANTS)
                         .filter(|octant| octant >> axis & 1 == negative)
-                        .map(|octant| octants[octant * NUMBERS + 3 * channel + component])
+                        .map(|octant| number(octant, 3 * channel + component))
                         .sum();
                     (sum as f64 * scale) as f32
                 })
