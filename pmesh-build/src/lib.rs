@@ -41,6 +41,8 @@ mod quadric;
 mod queue;
 mod rules;
 mod surface;
+#[cfg(test)]
+mod tests;
 
 pub use error::BuildError;
 #[cfg(feature = "fuzz")]

@@ -33,7 +33,6 @@ impl Cost {
 
 /// Choices of [`build`](crate::build).
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct BuildOptions {
     /// What a collapse costs.
     pub cost: Cost,

@@ -68,10 +68,11 @@ impl Surface {
                     self.around.remove(x, f);
                 }
             } else {
-                for k in 0..3 {
-                    if face[k] == u {
-                        self.faces[f as usize][k] = v;
-                        self.corners[f as usize][k] = target(self.corners[f as usize][k]);
+                let corners = &mut self.corners[f as usize];
+                for (vertex, wedge) in self.faces[f as usize].iter_mut().zip(corners) {
+                    if *vertex == u {
+                        *vertex = v;
+                        *wedge = target(*wedge);
                     }
                 }
                 moved.push(f);

@@ -1,14 +1,83 @@
-//! The .pmesh format: Melax progressive meshes as packets, every vertex count a level.
-#![cfg_attr(not(any(feature = "std", test)), no_std)]
+//! The .pmesh format: progressive meshes in the manner of Melax as packets that can be streamed; every vertex count is a
+//! level.
+//!
+//! Vertices stand in order of importance; each from the base on collapses onto an earlier one. Level *n* is the mesh of the
+//! first *n* vertices, so all levels share one vertex buffer. Authority: `spec/common.md` and `spec/pmesh.md`, which define
+//! every byte and every error; clause ids such as `PMESH-SWI-01` are theirs.
+//!
+//! ```text
+//! header 128 ─ chunks: PDIR (20 a packet), MTRL ─ packet 0 (with the base) ─ packet 1 … packet P−1 ─ end 20
+//! ```
+//!
+//! Besides positions (12 bytes a vertex), attributes (on wedges) and faces (12 bytes each) a packet holds what makes it a
+//! refinement: the parent of each vertex (4 bytes) and which corners switch to it (about 1 byte). The Stanford dragon
+//! (435,545 vertices, 871,306 faces) takes 17.8 MB in packets of 5,000 vertices; plain arrays take 15.7 MB.
+//!
+//! ```
+//! use pmesh_format::{EncodeOptions, Limits, ProgressiveMesh, Replay, Wedges, decode_all, encode};
+//!
+//! // A square of two triangles; its fourth vertex collapses onto the first, and the second triangle goes with it.
+//! let square = ProgressiveMesh {
+//!     positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+//!     wedges: Wedges { vertices: vec![0, 1, 2, 3], ..Wedges::default() },
+//!     base_vertices: 3,
+//!     collapse: vec![0],
+//!     wedge_collapse: vec![0],
+//!     errors: vec![0.5],
+//!     faces: vec![[0, 1, 2], [0, 2, 3]],
+//!     ..ProgressiveMesh::default()
+//! };
+//! let file = encode(&square, &EncodeOptions::default())?;
+//!
+//! let mut replay = Replay::default();
+//! let mut faults = Vec::new();
+//! decode_all(&file, &Limits::default(), |event| faults.extend(replay.accept(&event).err()))?;
+//! assert!(faults.is_empty());
+//! assert_eq!(replay.indices(), [[0, 1, 2], [0, 2, 3]]);
+//! replay.set_level(3)?;
+//! assert_eq!(replay.indices(), [[0, 1, 2]]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Guarantees: reading never panics, whatever the bytes; [`Decoder`] allocates nothing but the directory; [`Replay`] holds at
+//! most 8 bytes for each byte received (PMESH-LIM-03); a declared count never makes anything allocate; any split of the bytes
+//! gives the same events and the same error; a packet that breaks a rule leaves the levels before it as they were.
+//! [`decode_packet`] reads one packet by its range, [`Header::packet_range`] says where it lies.
+//!
+//! Features: `std` (default) is only passed on to dependencies; it never changes bytes or results.
+#![no_std]
 #![forbid(unsafe_code)]
 
 extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
+mod attributes;
+mod code;
+mod decode;
+mod encode;
+mod header;
+mod limits;
+mod material;
 mod mesh;
+mod packet;
 mod progressive;
+mod replay;
+mod slots;
+#[cfg(test)]
+mod tests;
+mod wire;
 
+pub use attributes::Attributes;
+pub use code::codes;
+pub use decode::{BufferedDecoder, Decoder, Event, check, decode_all, decode_packet};
+pub use encode::{EncodeError, EncodeOptions, PacketSize, encode};
+pub use header::{Header, PacketEntry};
+pub use ivg_wire::{Error, Step, Verdict};
+pub use limits::{Limits, MAX_COUNT};
+pub use material::material_names;
 pub use mesh::{IndexedMesh, LevelFault, Wedges, check_level};
+pub use packet::Packet;
 pub use progressive::ProgressiveMesh;
-
-/// The greatest number of vertices, of wedges and of faces (spec PMESH-LIM-01): corner slots are numbered in 32 bits.
-pub const MAX_COUNT: u32 = 1 << 30;
+pub use replay::{LevelChange, LevelError, Replay};
+pub use wire::{DIRECTORY, HEADER_BYTES, MATERIALS};

@@ -1,0 +1,318 @@
+//! Writing: a mesh with its collapse order becomes a file. Deterministic: the same mesh and options give the same bytes.
+
+use alloc::vec::Vec;
+
+use ivg_wire::{
+    ContentId, END_PAYLOAD, Maximum, chunk_len, record_len, write_chunk, write_end, write_record,
+};
+
+use crate::attributes::Attributes;
+use crate::header::{Header, PacketEntry};
+use crate::material::write_names;
+use crate::packet::{Bits, code_bits, write_varint};
+use crate::progressive::ProgressiveMesh;
+use crate::slots::Slots;
+use crate::wire::{DIRECTORY, FORMAT, HEADER_BYTES, MATERIALS};
+
+mod error;
+
+pub use error::EncodeError;
+
+/// How many vertices each packet brings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PacketSize {
+    /// The same number in every packet.
+    Fixed(u32),
+    /// A share of the vertices that came before, so that every packet refines the picture by as much as the one before.
+    Growing {
+        /// Vertices of the first packet.
+        first: u32,
+        /// Growth by each packet \[%\].
+        percent: u32,
+        /// The most vertices of one packet.
+        most: u32,
+    },
+}
+
+/// How to write a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EncodeOptions {
+    /// How many vertices each packet brings. The first one always brings the whole base, each at least one.
+    pub packets: PacketSize,
+}
+
+impl EncodeOptions {
+    /// The defaults: 256 vertices, then 30 % more with each packet, but at most 5,000 at once.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { packets: PacketSize::Growing { first: 256, percent: 30, most: 5000 } }
+    }
+
+    /// Packets of that many vertices each.
+    #[must_use]
+    pub const fn fixed(vertices: u32) -> Self {
+        Self { packets: PacketSize::Fixed(vertices) }
+    }
+}
+
+impl Default for EncodeOptions {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl PacketSize {
+    /// The vertex count after the packet that begins at vertex `start`.
+    fn end(self, start: u32, base: u32, vertices: u32) -> u32 {
+        let size = match self {
+            Self::Fixed(size) => size,
+            Self::Growing { first, most, .. } if start == 0 => first.min(most),
+            Self::Growing { percent, most, .. } => {
+                let share = u64::from(start) * u64::from(percent) / 100;
+                u32::try_from(share).unwrap_or(u32::MAX).min(most)
+            }
+        };
+        start.saturating_add(size.max(1)).max(base).min(vertices)
+    }
+}
+
+/// Writes a mesh with its collapse order as a file.
+///
+/// # Errors
+///
+/// [`EncodeError`] names what cannot be written and where.
+pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>, EncodeError> {
+    error::check(mesh)?;
+    let writer = Writer::new(mesh);
+    let names = write_names(&mesh.material_names).ok_or(EncodeError::MaterialName)?;
+
+    let mut packets: Vec<PacketEntry> = Vec::new();
+    let mut payloads = Vec::new();
+    let vertices = mesh.positions.len() as u32;
+    while packets.last().map_or(0, |p| p.vertices.end) < vertices {
+        let entry = writer.entry(packets.last(), options.packets);
+        let payload = writer.payload(&entry);
+        let record = record_len(payload.len() as u64).filter(|&len| len <= u64::from(Maximum::RECORD_BYTES));
+        record.ok_or(EncodeError::PacketSize { packet: packets.len() })?;
+        packets.push(PacketEntry { payload_bytes: payload.len() as u32, ..entry });
+        payloads.push(payload);
+    }
+
+    let mut header = writer.header(packets);
+    let (bytes, directory) = header.to_bytes();
+    // The header without what depends on the content id and on itself; then all that is encoded.
+    let mut parts = alloc::vec![&bytes[56..], &directory[..], &names[..]];
+    parts.extend(payloads.iter().map(|payload| &payload[..]));
+    header.content_id = ContentId::of(&parts);
+
+    let chunk = |payload: usize| chunk_len(payload as u64).unwrap_or(u64::MAX);
+    let chunks = [&directory, &names].map(|payload| chunk(payload.len()));
+    if chunks.iter().any(|&len| len > u64::from(Maximum::CHUNK_BYTES)) {
+        return Err(EncodeError::ChunkSize);
+    }
+    let with_names = !names.is_empty();
+    header.data_offset = HEADER_BYTES as u64 + chunks[0] + if with_names { chunks[1] } else { 0 };
+    // Lengths of things that are in memory, or a few times 2³¹: their sum fits.
+    let records = payloads.iter().filter_map(|payload| record_len(payload.len() as u64)).sum::<u64>();
+    header.file_bytes = header.data_offset + records + record_len(END_PAYLOAD).unwrap_or(0);
+
+    let mut out = Vec::with_capacity(usize::try_from(header.file_bytes).unwrap_or(0));
+    out.extend_from_slice(&header.to_bytes().0);
+    write_chunk(&mut out, DIRECTORY, true, &directory, header.content_id);
+    if with_names {
+        write_chunk(&mut out, MATERIALS, false, &names, header.content_id);
+    }
+    for (k, payload) in (0u32..).zip(&payloads) {
+        write_record(&mut out, k, 0, payload, header.content_id);
+    }
+    write_end(&mut out, header.file_bytes, header.content_id);
+    debug_assert_eq!(out.len() as u64, header.file_bytes);
+    Ok(out)
+}
+
+/// A mesh, its faces in stored order, and the switch codes of its vertices.
+struct Writer<'a> {
+    mesh: &'a ProgressiveMesh,
+    attributes: Attributes,
+    /// First wedge of each vertex, and the end.
+    wedge_starts: Vec<u32>,
+    /// Level of introduction, corners as mapped there, and index in the mesh of each stored face.
+    faces: Vec<(u32, [u32; 3], usize)>,
+    switches: Switches,
+}
+
+impl<'a> Writer<'a> {
+    fn new(mesh: &'a ProgressiveMesh) -> Self {
+        let vertices = mesh.positions.len();
+        let mut wedge_starts = alloc::vec![0; vertices + 1];
+        for &v in &mesh.wedges.vertices {
+            wedge_starts[v as usize + 1] += 1;
+        }
+        for v in 0..vertices {
+            wedge_starts[v + 1] += wedge_starts[v];
+        }
+        let faces = mesh.stored_faces();
+        let attributes = Attributes {
+            normals: !mesh.wedges.normals.is_empty(),
+            uvs: !mesh.wedges.uvs.is_empty(),
+            colours: !mesh.wedges.colours.is_empty(),
+            materials: mesh.materials.iter().any(|&m| m != 0),
+            seams: mesh.wedges.len() != vertices,
+        };
+        let switches = Switches::find(mesh, &faces, &wedge_starts);
+        Self { mesh, attributes, wedge_starts, faces, switches }
+    }
+
+    /// The packet that follows `before`; its payload's length is not known yet.
+    fn entry(&self, before: Option<&PacketEntry>, size: PacketSize) -> PacketEntry {
+        let start = before.map_or((0, 0, 0), |p| (p.vertices.end, p.wedges.end, p.faces.end));
+        let vertices = self.mesh.positions.len() as u32;
+        let end = size.end(start.0, self.mesh.base_vertices, vertices);
+        // The coarsest level that the packet brings lacks this vertex and all later ones.
+        let lacking = (start.0 + 1).max(self.mesh.base_vertices) - self.mesh.base_vertices;
+        PacketEntry {
+            vertices: start.0..end,
+            wedges: start.1..self.wedge_starts[end as usize],
+            faces: start.2..self.faces.partition_point(|&(level, ..)| level <= end) as u32,
+            payload_bytes: 0,
+            error: self.mesh.errors.get(lacking as usize).copied().unwrap_or(0.0),
+            bytes: 0..0,
+        }
+    }
+
+    /// The payload of a packet (PMESH-PKT-02).
+    fn payload(&self, entry: &PacketEntry) -> Vec<u8> {
+        let mesh = self.mesh;
+        let vertices = entry.vertices.start as usize..entry.vertices.end as usize;
+        let wedges = entry.wedges.start as usize..entry.wedges.end as usize;
+        let faces = &self.faces[entry.faces.start as usize..entry.faces.end as usize];
+        let base = mesh.base_vertices as usize;
+        let splits = vertices.start.max(base) - base..vertices.end - base;
+        let mut out = Vec::new();
+        floats(&mut out, &mesh.positions[vertices.clone()]);
+        if self.attributes.normals {
+            floats(&mut out, &mesh.wedges.normals[wedges.clone()]);
+        }
+        if self.attributes.uvs {
+            floats(&mut out, &mesh.wedges.uvs[wedges.clone()]);
+        }
+        if self.attributes.colours {
+            out.extend(mesh.wedges.colours[wedges.clone()].as_flattened());
+        }
+        out.extend(faces.iter().flat_map(|(_, corners, _)| corners).flat_map(|w| w.to_le_bytes()));
+        out.extend(mesh.collapse[splits.clone()].iter().flat_map(|parent| parent.to_le_bytes()));
+        if self.attributes.materials {
+            out.extend(faces.iter().flat_map(|&(_, _, i)| mesh.materials[i].to_le_bytes()));
+        }
+        if self.attributes.seams {
+            for v in vertices {
+                write_varint(&mut out, self.wedge_starts[v + 1] - self.wedge_starts[v]);
+            }
+            let base_wedges = self.wedge_starts[base];
+            for v in splits.clone() {
+                let first_of_parent = self.wedge_starts[mesh.collapse[v] as usize];
+                for w in self.wedge_starts[base + v]..self.wedge_starts[base + v + 1] {
+                    write_varint(&mut out, mesh.wedge_collapse[(w - base_wedges) as usize] - first_of_parent);
+                }
+            }
+        }
+        let mut bits = Bits::default();
+        for v in splits {
+            let wedges = self.wedge_starts[base + v + 1] - self.wedge_starts[base + v];
+            for &code in self.switches.of(v) {
+                bits.push(code, code_bits(wedges));
+            }
+        }
+        out.extend_from_slice(bits.bytes());
+        out
+    }
+
+    /// The header, as far as it is known before the file is laid out.
+    fn header(&self, packets: Vec<PacketEntry>) -> Header {
+        let mesh = self.mesh;
+        let mut bounds = mesh.positions.first().map_or([[0.0; 3]; 2], |&p| [p, p]);
+        for p in &mesh.positions {
+            for k in 0..3 {
+                bounds[0][k] = bounds[0][k].min(p[k]);
+                bounds[1][k] = bounds[1][k].max(p[k]);
+            }
+        }
+        Header {
+            minor: FORMAT.minor,
+            optional_features: 0,
+            header_bytes: FORMAT.header_bytes,
+            content_id: ContentId(0),
+            data_offset: 0,
+            file_bytes: 0,
+            vertex_count: mesh.positions.len() as u32,
+            wedge_count: mesh.wedges.len() as u32,
+            face_count: self.faces.len() as u32,
+            base_vertices: mesh.base_vertices,
+            attributes: self.attributes,
+            origin: mesh.origin,
+            bounds,
+            packets,
+        }
+    }
+}
+
+/// The switch codes of each vertex from the base on, in the order of the slots of its parent (PMESH-SWI-01).
+struct Switches {
+    codes: Vec<u32>,
+    /// Where the codes of each vertex lie.
+    ranges: Vec<(usize, usize)>,
+}
+
+impl Switches {
+    /// Takes vertices away from the finest level down, as a reader that goes down does, and notes what switched.
+    fn find(mesh: &ProgressiveMesh, faces: &[(u32, [u32; 3], usize)], wedge_starts: &[u32]) -> Self {
+        let base = mesh.base_vertices as usize;
+        let base_wedges = wedge_starts.get(base).copied().unwrap_or(0);
+        let mut corners: Vec<[u32; 3]> = faces.iter().map(|&(_, _, i)| mesh.faces[i]).collect();
+        let vertex_of = |w: u32| mesh.wedges.vertices[w as usize];
+        let mut slots = Slots::default();
+        slots.resize(mesh.positions.len(), faces.len());
+        for (face, corners) in (0u32..).zip(&corners) {
+            for (corner, &wedge) in (0u32..).zip(corners) {
+                slots.push(vertex_of(wedge), 3 * face + corner);
+            }
+        }
+        let mut codes = Vec::new();
+        let mut ranges = alloc::vec![(0, 0); mesh.collapse.len()];
+        let mut left = faces.len();
+        for split in (0..mesh.collapse.len()).rev() {
+            let vertex = (base + split) as u32;
+            while left > 0 && faces[left - 1].0 == vertex + 1 {
+                left -= 1;
+                debug_assert_eq!(corners[left], faces[left].1, "corners as mapped at introduction");
+                for wedge in corners[left] {
+                    slots.pop(vertex_of(wedge));
+                }
+            }
+            let start = codes.len();
+            slots.merge(vertex, mesh.collapse[split], |slot, was_child| {
+                let corner = &mut corners[(slot / 3) as usize][(slot % 3) as usize];
+                if was_child {
+                    codes.push(*corner - wedge_starts[vertex as usize] + 1);
+                    *corner = mesh.wedge_collapse[(*corner - base_wedges) as usize];
+                } else {
+                    codes.push(0);
+                }
+            });
+            ranges[split] = (start, codes.len());
+        }
+        Self { codes, ranges }
+    }
+
+    fn of(&self, split: usize) -> &[u32] {
+        let (start, end) = self.ranges[split];
+        &self.codes[start..end]
+    }
+}
+
+fn floats<const N: usize>(out: &mut Vec<u8>, array: &[[f32; N]]) {
+    out.extend(array.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+}
+
+#[cfg(test)]
+mod tests;

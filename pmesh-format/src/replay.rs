@@ -1,0 +1,441 @@
+//! The mesh at any level of what has arrived: packets go in, levels come out.
+//!
+//! The file holds what changes on the way up. [`Replay`] walks that way and back: adding vertex *v* lets some corner slots of
+//! its parent switch to *v* and appends the faces that *v* introduces; taking it away undoes both. Nothing else is touched.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::ops::{Range, RangeInclusive};
+
+use ivg_wire::Error;
+
+use crate::attributes::Attributes;
+use crate::code::codes;
+use crate::decode::Event;
+use crate::header::Header;
+use crate::material::material_names;
+use crate::mesh::{IndexedMesh, Wedges};
+use crate::packet::{Bits, Packet, code_bits};
+use crate::slots::Slots;
+use crate::wire::MATERIALS;
+
+mod load;
+
+/// A mesh that can be shown at any number of vertices that has arrived.
+///
+/// Its arrays only ever grow; a level is a prefix of each. The vertex buffer of a graphics processor needs no change but
+/// appending, the index buffer those of [`LevelChange::changed`].
+#[derive(Clone, Debug, Default)]
+pub struct Replay {
+    header: Header,
+    material_names: Vec<String>,
+    /// Packets that are in.
+    packets: u32,
+    /// The vertex count that the arrays show.
+    level: u32,
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    colours: Vec<[u8; 4]>,
+    /// Wedge indices of the faces: those of the level as mapped there, later ones as introduced.
+    corners: Vec<[u32; 3]>,
+    materials: Vec<u16>,
+    /// Parents of the vertices from the base on.
+    parents: Vec<u32>,
+    /// For each vertex from the base on, how many faces there are with it.
+    face_ends: Vec<u32>,
+    /// Faces of the base.
+    base_faces: u32,
+    /// Empty where wedge and vertex are the same, as the next two are: the end of each vertex's wedges.
+    wedge_ends: Vec<u32>,
+    /// The vertex of each wedge.
+    wedge_vertices: Vec<u32>,
+    /// What each wedge from those of the base on becomes.
+    wedge_targets: Vec<u32>,
+    slots: Slots,
+    /// Switch codes of all vertices from the base on.
+    switches: Bits,
+    /// Where the switch codes of the next vertex begin.
+    switch_at: u64,
+    /// Faces of which a corner has switched since the last report.
+    touched: Vec<u32>,
+}
+
+/// What is different after a change of level.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LevelChange {
+    /// The level before.
+    pub from: u32,
+    /// The level now.
+    pub to: u32,
+    /// Faces of the new level whose corners are others than before, or that are new: what a copy of the index buffer must
+    /// be given again. Ascending, without overlaps.
+    pub changed: Vec<Range<u32>>,
+}
+
+/// A level that has not arrived, or that the mesh does not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LevelError {
+    /// The level asked for.
+    pub asked: u32,
+    /// The levels there are; `None` before the first packet.
+    pub levels: Option<RangeInclusive<u32>>,
+}
+
+impl core::fmt::Display for LevelError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match &self.levels {
+            Some(levels) => {
+                write!(
+                    f,
+                    "no level of {} vertices: there are {} to {}",
+                    self.asked,
+                    levels.start(),
+                    levels.end()
+                )
+            }
+            None => write!(f, "no level of {} vertices: no packet has arrived yet", self.asked),
+        }
+    }
+}
+
+impl core::error::Error for LevelError {}
+
+impl Replay {
+    /// For the packets of the file with this header.
+    #[must_use]
+    pub fn new(header: &Header) -> Self {
+        Self { header: header.clone(), ..Self::default() }
+    }
+
+    /// Takes whatever a decoder found: starts anew with a header, notes the names of materials, applies packets.
+    ///
+    /// # Errors
+    ///
+    /// As [`Replay::apply`]; or the names of the materials cannot be read.
+    pub fn accept(&mut self, event: &Event<'_>) -> Result<Option<LevelChange>, Error> {
+        match event {
+            Event::Header(header) => *self = Self::new(header),
+            Event::Chunk(chunk) if chunk.kind == MATERIALS => {
+                self.material_names = material_names(chunk)?.map(String::from).collect();
+            }
+            Event::Packet(packet) => return self.apply(packet).map(Some),
+            Event::Chunk(_) | Event::End => {}
+        }
+        Ok(None)
+    }
+
+    /// Takes the next packet and goes to the highest level that it brings.
+    ///
+    /// # Errors
+    ///
+    /// The first rule that the packet breaks, with its place in the file; the packet is not the next one of this file. What
+    /// has arrived before, and the level, stay as they were.
+    pub fn apply(&mut self, packet: &Packet<'_>) -> Result<LevelChange, Error> {
+        if packet.index() != self.packets || packet.header().content_id != self.header.content_id {
+            return Err(packet.error(codes::PACKET_ORDER, 0));
+        }
+        let from = self.level;
+        let faces = self.face_count();
+        self.touched.clear();
+        self.walk(self.max_level());
+        if let Err(error) = self.load(packet) {
+            self.walk(from);
+            self.touched.clear();
+            return Err(error);
+        }
+        self.packets += 1;
+        Ok(self.report(from, faces))
+    }
+
+    /// Goes to the level of `level` vertices.
+    ///
+    /// # Errors
+    ///
+    /// The level is below the coarsest one or above [`Replay::max_level`]; nothing has changed then.
+    pub fn set_level(&mut self, level: u32) -> Result<LevelChange, LevelError> {
+        let levels = self.levels();
+        if !levels.as_ref().is_some_and(|levels| levels.contains(&level)) {
+            return Err(LevelError { asked: level, levels });
+        }
+        let (from, faces) = (self.level, self.face_count());
+        self.touched.clear();
+        self.walk(level);
+        Ok(self.report(from, faces))
+    }
+
+    /// The header of the file.
+    #[must_use]
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// How many packets are in.
+    #[must_use]
+    pub fn packets(&self) -> u32 {
+        self.packets
+    }
+
+    /// The levels that can be shown; `None` before the first packet of a mesh that has any.
+    #[must_use]
+    pub fn levels(&self) -> Option<RangeInclusive<u32>> {
+        let there = self.packets > 0 || self.header.vertex_count == 0;
+        there.then(|| self.header.base_vertices..=self.max_level())
+    }
+
+    /// The vertex count of the highest level that can be shown; 0 before the first packet.
+    #[must_use]
+    pub fn max_level(&self) -> u32 {
+        self.positions.len() as u32
+    }
+
+    /// The vertex count of the level that the arrays show; 0 before the first packet.
+    #[must_use]
+    pub fn level(&self) -> u32 {
+        self.level
+    }
+
+    /// Estimated error of the level, or more \[m\]: that of the packet which holds its last vertex (PMESH-DIR-05). Infinite
+    /// before the first packet, 0 at the finest level.
+    #[must_use]
+    pub fn error(&self) -> f32 {
+        if self.level == self.header.vertex_count {
+            return 0.0;
+        }
+        let entry = self.header.packet_of_level(self.level).and_then(|k| self.header.packets.get(k as usize));
+        entry.map_or(f32::INFINITY, |entry| entry.error)
+    }
+
+    /// Positions of the level's vertices relative to [`Header::origin`] \[m\].
+    #[must_use]
+    pub fn positions(&self) -> &[[f32; 3]] {
+        &self.positions[..self.level as usize]
+    }
+
+    /// How many wedges the level has.
+    #[must_use]
+    pub fn wedge_count(&self) -> u32 {
+        self.level.checked_sub(1).map_or(0, |last| self.wedges_of(last).end)
+    }
+
+    /// Normals of the level's wedges; empty if the file has none.
+    #[must_use]
+    pub fn normals(&self) -> &[[f32; 3]] {
+        prefix(&self.normals, self.wedge_count())
+    }
+
+    /// Texture coordinates of the level's wedges; empty if the file has none.
+    #[must_use]
+    pub fn uvs(&self) -> &[[f32; 2]] {
+        prefix(&self.uvs, self.wedge_count())
+    }
+
+    /// Colours of the level's wedges; empty if the file has none.
+    #[must_use]
+    pub fn colours(&self) -> &[[u8; 4]] {
+        prefix(&self.colours, self.wedge_count())
+    }
+
+    /// The vertex that a wedge of the level belongs to.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such wedge.
+    #[must_use]
+    pub fn wedge_vertex(&self, wedge: u32) -> u32 {
+        assert!(wedge < self.wedge_count(), "wedge {wedge} of {}", self.wedge_count());
+        self.vertex_of(wedge)
+    }
+
+    /// How many faces the level has.
+    #[must_use]
+    pub fn face_count(&self) -> u32 {
+        self.faces_at(self.level)
+    }
+
+    /// Wedge indices of the level's faces, in the order of introduction.
+    #[must_use]
+    pub fn indices(&self) -> &[[u32; 3]] {
+        &self.corners[..self.face_count() as usize]
+    }
+
+    /// Materials of the level's faces; empty if every face has material 0.
+    #[must_use]
+    pub fn face_materials(&self) -> &[u16] {
+        prefix(&self.materials, self.face_count())
+    }
+
+    /// Names of the materials, as far as the file gave them to [`Replay::accept`].
+    #[must_use]
+    pub fn material_names(&self) -> &[String] {
+        &self.material_names
+    }
+
+    /// The level as a mesh of its own.
+    #[must_use]
+    pub fn mesh(&self) -> IndexedMesh {
+        IndexedMesh {
+            origin: self.header.origin,
+            positions: self.positions().to_vec(),
+            wedges: Wedges {
+                vertices: (0..self.wedge_count()).map(|w| self.vertex_of(w)).collect(),
+                normals: self.normals().to_vec(),
+                uvs: self.uvs().to_vec(),
+                colours: self.colours().to_vec(),
+            },
+            triangles: self.indices().to_vec(),
+            materials: self.face_materials().to_vec(),
+            material_names: self.material_names.clone(),
+        }
+    }
+
+    fn attributes(&self) -> Attributes {
+        self.header.attributes
+    }
+
+    fn base(&self) -> u32 {
+        self.header.base_vertices
+    }
+
+    /// The wedges of a vertex that has arrived.
+    fn wedges_of(&self, vertex: u32) -> Range<u32> {
+        if !self.attributes().seams {
+            return vertex..vertex + 1;
+        }
+        let start = vertex.checked_sub(1).and_then(|before| self.wedge_ends.get(before as usize));
+        start.copied().unwrap_or(0)..self.wedge_ends.get(vertex as usize).copied().unwrap_or(0)
+    }
+
+    /// The vertex of a wedge that has arrived.
+    fn vertex_of(&self, wedge: u32) -> u32 {
+        if self.attributes().seams { self.wedge_vertices[wedge as usize] } else { wedge }
+    }
+
+    /// The wedge that a wedge of a vertex from the base on becomes when its vertex goes.
+    fn target(&self, wedge: u32) -> u32 {
+        if self.attributes().seams {
+            let base_wedges = self.wedges_of(self.base()).start;
+            self.wedge_targets[(wedge - base_wedges) as usize]
+        } else {
+            self.parents[(wedge - self.base()) as usize]
+        }
+    }
+
+    fn faces_at(&self, level: u32) -> u32 {
+        match level.checked_sub(self.base() + 1) {
+            Some(split) => self.face_ends[split as usize],
+            None if level == 0 => 0,
+            None => self.base_faces,
+        }
+    }
+
+    /// Adds and takes away vertices until `level` are there; all of it has arrived. To level 0 only before the first packet.
+    fn walk(&mut self, level: u32) {
+        while self.level < level {
+            self.raise();
+        }
+        while self.level > level.max(self.base()) {
+            self.lower();
+        }
+        self.level = level;
+    }
+
+    /// Adds the next vertex, whose switch codes are known.
+    fn raise(&mut self) {
+        let vertex = self.level;
+        let parent = self.parents[(vertex - self.base()) as usize];
+        let wedges = self.wedges_of(vertex);
+        let bits = code_bits(wedges.len() as u32);
+        let Self { slots, corners, switches, switch_at, touched, .. } = self;
+        // Codes that were checked when the packet came cannot fail.
+        let _: Result<(), core::convert::Infallible> = slots.split(parent, vertex, |slot| {
+            let code = switches.get(*switch_at, bits).unwrap_or(0);
+            *switch_at += u64::from(bits);
+            if code > 0 {
+                corners[(slot / 3) as usize][(slot % 3) as usize] = wedges.start + code - 1;
+                touched.push(slot / 3);
+            }
+            Ok(code > 0)
+        });
+        self.introduce_faces();
+    }
+
+    /// Counts the next vertex, whose slots are in its list, as there, and adds the faces that it introduces.
+    fn introduce_faces(&mut self) {
+        let vertex = self.level;
+        self.level += 1;
+        for face in self.faces_at(vertex)..self.faces_at(vertex + 1) {
+            self.introduce(face);
+        }
+        self.compact_touched();
+    }
+
+    /// Takes the last vertex away.
+    fn lower(&mut self) {
+        let vertex = self.level - 1;
+        for face in (self.faces_at(vertex)..self.faces_at(vertex + 1)).rev() {
+            for corner in self.corners[face as usize] {
+                let at = self.vertex_of(corner);
+                self.slots.pop(at);
+            }
+        }
+        let parent = self.parents[(vertex - self.base()) as usize];
+        let bits = code_bits(self.wedges_of(vertex).len() as u32);
+        let mut slots = core::mem::take(&mut self.slots);
+        let mut count = 0u64;
+        slots.merge(vertex, parent, |slot, was_child| {
+            count += 1;
+            if was_child {
+                let (face, corner) = ((slot / 3) as usize, (slot % 3) as usize);
+                self.corners[face][corner] = self.target(self.corners[face][corner]);
+                self.touched.push(slot / 3);
+            }
+        });
+        self.slots = slots;
+        self.switch_at -= count * u64::from(bits);
+        self.level = vertex;
+        self.compact_touched();
+    }
+
+    /// Puts the slots of a new face into the lists of its vertices.
+    fn introduce(&mut self, face: u32) {
+        for (corner, wedge) in (0..).zip(self.corners[face as usize]) {
+            let vertex = self.vertex_of(wedge);
+            self.slots.push(vertex, 3 * face + corner);
+        }
+    }
+
+    /// Keeps the list of touched faces from growing beyond twice the number of faces.
+    fn compact_touched(&mut self) {
+        if self.touched.len() > 2 * self.corners.len() + 64 {
+            self.touched.sort_unstable();
+            self.touched.dedup();
+        }
+    }
+
+    /// What has changed since the level was `from`, with that many faces.
+    fn report(&mut self, from: u32, faces_before: u32) -> LevelChange {
+        let faces = self.face_count();
+        self.touched.sort_unstable();
+        self.touched.dedup();
+        let mut changed: Vec<Range<u32>> = Vec::new();
+        let mut add = |range: Range<u32>| match changed.last_mut() {
+            _ if range.is_empty() => {}
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => changed.push(range),
+        };
+        for &face in self.touched.iter().filter(|&&face| face < faces.min(faces_before)) {
+            add(face..face + 1);
+        }
+        add(faces_before..faces.max(faces_before));
+        self.touched.clear();
+        LevelChange { from, to: self.level, changed }
+    }
+}
+
+fn prefix<T>(array: &[T], count: u32) -> &[T] {
+    if array.is_empty() { array } else { &array[..count as usize] }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! The only file that knows where the fields of the specific header, of a directory entry and of a packet lie
+//! (`spec/tables/pmesh.toml`).
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::arithmetic_side_effects))]
+
+use core::mem::offset_of;
+use core::ops::Range;
+
+use ivg_wire::{COMMON_HEADER_BYTES, ChunkKind, FormatId};
+use zerocopy::little_endian::{F32, F64, U16, U32};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
+
+use crate::attributes::Attributes;
+
+/// The format, and the version that this crate reads and writes.
+pub(crate) const FORMAT: FormatId = FormatId {
+    magic: *b"\x89PMS\r\n\x1A\n",
+    major: 0,
+    minor: 1,
+    header_bytes: HEADER_BYTES as u32,
+    features: 0,
+};
+
+/// Bytes of the whole header.
+pub const HEADER_BYTES: usize = COMMON_HEADER_BYTES + size_of::<Specific>();
+
+const _: () = assert!(HEADER_BYTES == 128 && HEADER_BYTES.is_multiple_of(8));
+
+/// The mode of packets that are arrays as graphics processors take them (PMESH-HDR-03).
+pub(crate) const MODE_RAW: u8 = 1;
+
+/// Positions as three binary32 numbers (PMESH-HDR-04).
+pub(crate) const POSITIONS_F32: u8 = 1;
+
+/// Type of the chunk that holds the packet directory.
+pub const DIRECTORY: ChunkKind = ChunkKind(*b"PDIR");
+
+/// Type of the chunk that holds the names of the materials.
+pub const MATERIALS: ChunkKind = ChunkKind(*b"MTRL");
+
+/// The header's bytes from 56 on.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, KnownLayout, Immutable, Unaligned)]
+#[repr(C)]
+pub(crate) struct Specific {
+    pub(crate) vertex_count: U32,
+    pub(crate) wedge_count: U32,
+    pub(crate) face_count: U32,
+    pub(crate) base_vertices: U32,
+    pub(crate) packet_count: U32,
+    pub(crate) mode: u8,
+    pub(crate) positions: u8,
+    pub(crate) attributes: U16,
+    pub(crate) origin: [F64; 3],
+    pub(crate) bounds_min: [F32; 3],
+    pub(crate) bounds_max: [F32; 3],
+}
+
+/// One entry of the packet directory.
+#[derive(Clone, Copy, Debug, FromBytes, IntoBytes, KnownLayout, Immutable, Unaligned)]
+#[repr(C)]
+pub(crate) struct Entry {
+    pub(crate) end_vertex: U32,
+    pub(crate) end_wedge: U32,
+    pub(crate) end_face: U32,
+    pub(crate) payload_bytes: U32,
+    pub(crate) error: F32,
+}
+
+/// Bytes of a directory entry.
+pub(crate) const ENTRY_BYTES: usize = size_of::<Entry>();
+
+const _: () = assert!(ENTRY_BYTES == 20);
+
+/// Offsets of the fields, absolute for the header, within the entry for the directory: for errors and for the test
+/// against the specification.
+pub(crate) mod at {
+    use super::{COMMON_HEADER_BYTES, Entry, Specific, offset_of};
+
+    macro_rules! offsets {
+        ($all:ident, $of:ty, $base:expr; $($constant:ident = $field:ident;)*) => {
+            $(pub(crate) const $constant: u64 = ($base + offset_of!($of, $field)) as u64;)*
+            /// Every field and its offset.
+            #[cfg(test)]
+            pub(crate) const $all: &[(&str, u64)] = &[$((stringify!($field), $constant)),*];
+        };
+    }
+
+    offsets! { HEADER, Specific, COMMON_HEADER_BYTES;
+        VERTEX_COUNT = vertex_count;
+        WEDGE_COUNT = wedge_count;
+        FACE_COUNT = face_count;
+        BASE_VERTICES = base_vertices;
+        PACKET_COUNT = packet_count;
+        MODE = mode;
+        POSITIONS = positions;
+        ATTRIBUTES = attributes;
+        ORIGIN = origin;
+        BOUNDS_MIN = bounds_min;
+        BOUNDS_MAX = bounds_max;
+    }
+
+    offsets! { ENTRY, Entry, 0;
+        END_VERTEX = end_vertex;
+        END_WEDGE = end_wedge;
+        END_FACE = end_face;
+        PAYLOAD_BYTES = payload_bytes;
+        ERROR = error;
+    }
+}
+
+/// How many of each thing a packet holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PacketCounts {
+    pub(crate) vertices: u32,
+    pub(crate) wedges: u32,
+    pub(crate) faces: u32,
+    /// Vertices that collapse: those from the base on.
+    pub(crate) splits: u32,
+}
+
+/// Where the arrays of a raw packet lie in its payload (PMESH-PKT-02).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PacketLayout {
+    pub(crate) positions: Range<usize>,
+    pub(crate) normals: Range<usize>,
+    pub(crate) uvs: Range<usize>,
+    pub(crate) colours: Range<usize>,
+    pub(crate) corners: Range<usize>,
+    pub(crate) parents: Range<usize>,
+    pub(crate) materials: Range<usize>,
+    /// Numbers of variable length, then switch codes, begin here.
+    pub(crate) rest: usize,
+}
+
+/// Bytes of an element of each array: three or two binary32 numbers, four bytes, three or one u32, one u16.
+pub(crate) const VECTOR_BYTES: usize = 12;
+pub(crate) const UV_BYTES: usize = 8;
+pub(crate) const COLOUR_BYTES: usize = 4;
+pub(crate) const CORNERS_BYTES: usize = 12;
+pub(crate) const PARENT_BYTES: usize = 4;
+pub(crate) const MATERIAL_BYTES: usize = 2;
+
+impl PacketLayout {
+    /// The layout; `None` if it does not fit in the address space.
+    pub(crate) fn new(counts: PacketCounts, attributes: Attributes) -> Option<Self> {
+        let mut end = 0usize;
+        let mut array = |present: bool, count: u32, bytes: usize| {
+            let start = end;
+            if present {
+                end = usize::try_from(count).ok()?.checked_mul(bytes)?.checked_add(start)?;
+            }
+            Some(start..end)
+        };
+        let PacketCounts { vertices, wedges, faces, splits } = counts;
+        Some(Self {
+            positions: array(true, vertices, VECTOR_BYTES)?,
+            normals: array(attributes.normals, wedges, VECTOR_BYTES)?,
+            uvs: array(attributes.uvs, wedges, UV_BYTES)?,
+            colours: array(attributes.colours, wedges, COLOUR_BYTES)?,
+            corners: array(true, faces, CORNERS_BYTES)?,
+            parents: array(true, splits, PARENT_BYTES)?,
+            materials: array(attributes.materials, faces, MATERIAL_BYTES)?,
+            rest: end,
+        })
+    }
+}
