@@ -53,7 +53,7 @@ pub(crate) fn unit_or(n: DVec3, fallback: Vec3) -> Vec3 {
 
 /// Replaces normals of length zero by area-weighted ones.
 pub(crate) fn repair_normals(mesh: &mut Mesh) {
-    if mesh.normals.iter().any(|n| *n == Vec3::ZERO) {
+    if mesh.normals.contains(&Vec3::ZERO) {
         let computed = area_weighted_normals(&mesh.positions, &mesh.triangles);
         for (normal, computed) in mesh.normals.iter_mut().zip(computed) {
             if *normal == Vec3::ZERO {

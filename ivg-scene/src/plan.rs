@@ -1,5 +1,19 @@
+//! The effect plan: which light effects a scene calls for, which are left out, and why.
+//!
+//! Baker and renderer take the plan and do only what it names. An effect is left out only if the scene proves that it
+//! makes no difference; in doubt it is needed. What a scene asks for and this release cannot do is named, with what is
+//! done instead.
+
+mod analyse;
+mod shadow;
+
+use serde::Serialize;
+
+pub use analyse::{PlanOptions, analyse};
+
 /// A light effect that a scene may or may not call for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Effect {
     /// Light that reaches surfaces straight from a light.
@@ -19,7 +33,8 @@ pub enum Effect {
 }
 
 /// Whether an effect is simulated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Need {
     /// The scene calls for it and it is simulated.
     Needed,
@@ -30,7 +45,7 @@ pub enum Need {
 }
 
 /// What an effect costs, measured by a pilot run.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Cost {
     /// Expected time of the whole bake spent on this effect, all threads together \[s of CPU\].
     pub seconds: f64,
@@ -39,7 +54,7 @@ pub struct Cost {
 }
 
 /// One line of a plan.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlannedEffect {
     /// Which effect.
     pub effect: Effect,
@@ -52,7 +67,7 @@ pub struct PlannedEffect {
 }
 
 /// What is simulated for a scene, and why.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EffectPlan {
     /// One entry for each effect, in the order of [`Effect`].
     pub effects: Vec<PlannedEffect>,
@@ -68,4 +83,64 @@ impl EffectPlan {
     pub fn needs(&self, effect: Effect) -> bool {
         self.effects.iter().any(|e| e.effect == effect && e.need == Need::Needed)
     }
+
+    /// The line about `effect`; `None` if the plan does not speak of it.
+    #[must_use]
+    pub fn get(&self, effect: Effect) -> Option<&PlannedEffect> {
+        self.effects.iter().find(|e| e.effect == effect)
+    }
 }
+
+impl Effect {
+    /// All effects, in order.
+    pub const ALL: [Self; 7] = [
+        Self::DirectLight,
+        Self::Shadows,
+        Self::DiffuseIndirect,
+        Self::Mirrors,
+        Self::Glass,
+        Self::Textures,
+        Self::Sky,
+    ];
+
+    /// The name in reports, as a reader would say it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::DirectLight => "direct light",
+            Self::Shadows => "shadows",
+            Self::DiffuseIndirect => "diffuse indirect light",
+            Self::Mirrors => "mirrors",
+            Self::Glass => "glass",
+            Self::Textures => "textures",
+            Self::Sky => "sky",
+        }
+    }
+}
+
+impl std::fmt::Display for Effect {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl Need {
+    /// The word in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Needed => "needed",
+            Self::NotNeeded => "not needed",
+            Self::Unsupported => "unsupported",
+        }
+    }
+}
+
+impl std::fmt::Display for Need {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -36,7 +36,7 @@ fn assert_closed_manifold(triangles: &[[u32; 3]]) {
         assert!(next.contains_key(&(b, a)), "edge {a}-{b} is on a border");
         *valence.entry(a).or_default() += 1;
     }
-    for (&(a, b), _) in &next {
+    for &(a, b) in next.keys() {
         // Turn once around a, from b; a second fan at the same vertex would not be reached.
         let (mut at, mut steps) = (b, 0);
         loop {

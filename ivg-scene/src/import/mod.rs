@@ -15,8 +15,10 @@
 
 mod compress;
 mod folder;
+mod gltf;
 mod image;
 mod obj;
+mod ply;
 
 use std::path::{Path, PathBuf};
 
@@ -69,6 +71,8 @@ fn read(name: &str, bytes: &[u8], folder: &Folder) -> Result<Scene, SceneError> 
     let extension = Path::new(plain).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let mut scene = match extension.as_deref() {
         Some("obj") => obj::read(name, &stem, bytes, folder)?,
+        Some("gltf" | "glb") => gltf::read(name, bytes, folder)?,
+        Some("ply") => ply::read(name, &stem, bytes)?,
         _ => {
             return Err(SceneError::file(
                 name,

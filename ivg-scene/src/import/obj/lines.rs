@@ -190,11 +190,12 @@ impl BufRead for CheckedLines<'_> {
         if self.error.is_some() {
             return Err(io::Error::other("bad line"));
         }
-        if self.read == self.current.len() && !self.rest.is_empty() {
-            if let Err(error) = self.advance() {
-                self.error = Some(error);
-                return Err(io::Error::other("bad line"));
-            }
+        if self.read == self.current.len()
+            && !self.rest.is_empty()
+            && let Err(error) = self.advance()
+        {
+            self.error = Some(error);
+            return Err(io::Error::other("bad line"));
         }
         Ok(&self.current[self.read..])
     }
