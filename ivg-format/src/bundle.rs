@@ -236,6 +236,3 @@ impl Iterator for Vertices {
 }
 
 impl ExactSizeIterator for Vertices {}
-
-#[cfg(test)]
-mod tests;

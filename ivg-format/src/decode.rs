@@ -325,6 +325,3 @@ impl BufferedDecoder {
         if self.is_finished() { Ok(()) } else { Err(self.decoder.truncated(self.buffer.len())) }
     }
 }
-
-#[cfg(test)]
-mod tests;

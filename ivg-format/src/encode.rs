@@ -151,7 +151,7 @@ pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8
         payload.clear();
         match id {
             RecordId::Corners => {
-                write_vertices(&mut payload, source, packed.as_ref(), header.lattice.corners())
+                write_vertices(&mut payload, source, packed.as_ref(), header.lattice.corners());
             }
             RecordId::Bundle(k) => {
                 write_vertices(&mut payload, source, packed.as_ref(), header.bundle_vertices(k));
@@ -406,6 +406,3 @@ impl core::error::Error for EncodeError {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

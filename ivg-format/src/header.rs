@@ -361,6 +361,3 @@ fn lattice_error(error: LatticeError) -> Error {
         LatticeError::Step { axis } => fail(codes::STEP, field(at::STEP, 8, axis)),
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -116,6 +116,3 @@ pub(crate) fn write_metadata(pairs: &[(&str, &str)]) -> Vec<u8> {
     }
     out
 }
-
-#[cfg(test)]
-mod tests;

@@ -132,6 +132,3 @@ pub(crate) fn write(
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

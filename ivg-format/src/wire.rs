@@ -44,9 +44,6 @@ pub(crate) mod at {
     macro_rules! offsets {
         ($($constant:ident = $field:ident;)*) => {
             $(pub(crate) const $constant: u64 = (COMMON_HEADER_BYTES + offset_of!(Specific, $field)) as u64;)*
-            /// Every field and its absolute offset.
-            #[cfg(test)]
-            pub(crate) const ALL: &[(&str, u64)] = &[$((stringify!($field), $constant)),*];
         };
     }
 
@@ -58,10 +55,12 @@ pub(crate) mod at {
         ORDER = order;
         SCALE_EXPONENT = scale_exponent;
         VERTICES_PER_SLICE = vertices_per_slice;
-        SEED = seed;
         BUNDLE_COUNT = bundle_count;
         VALIDITY_RECORDS = validity_records;
         UNITS = units;
         RESERVED = reserved;
     }
 }
+
+#[cfg(test)]
+mod tests;

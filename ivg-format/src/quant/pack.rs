@@ -32,7 +32,7 @@ pub struct PackedHemisphere {
 #[must_use]
 pub fn pack_hemisphere(vectors: &[[f32; 3]; 3], hemisphere: usize) -> Option<PackedHemisphere> {
     assert!(hemisphere < 6, "there are six hemispheres, not {}", hemisphere + 1);
-    let (axis, positive) = (hemisphere / 2, hemisphere % 2 == 0);
+    let (axis, positive) = (hemisphere / 2, hemisphere.is_multiple_of(2));
     if !vectors.iter().flatten().all(|c| c.is_finite()) {
         return None;
     }

@@ -1,0 +1,8 @@
+//! The laws of the .ivg format, on small files built here.
+
+mod damage;
+mod fields;
+mod files;
+mod orders;
+mod roundtrip;
+mod splits;
