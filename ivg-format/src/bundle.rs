@@ -167,6 +167,21 @@ impl<'a> Bundle<'a> {
         bundle.vertices().enumerate().map(move |(n, vertex)| (vertex, bundle.vectors(n)))
     }
 
+    /// For validators: the first direction that is not strictly inside its hemisphere, as vertex and hemisphere
+    /// (IVG-PACK-03). Readers accept such a bundle; no writer should have made it.
+    #[must_use]
+    pub fn outside_hemisphere(&self) -> Option<(u64, usize)> {
+        let vertices = self.vertices().zip(0..self.len);
+        vertices.flat_map(|(vertex, n)| (0..HEMISPHERES).map(move |h| (vertex, n, h))).find_map(
+            |(vertex, n, h)| {
+                let directions = self.packed(n)?;
+                let along = directions[h].0[h / 2];
+                let inside = if h.is_multiple_of(2) { along > 0.0 } else { along < 0.0 };
+                (!inside).then_some((vertex, h))
+            },
+        )
+    }
+
     fn hemisphere(&self, n: usize, h: usize) -> ([f32; 3], [f32; 3]) {
         let at = n * HEMISPHERES + h;
         let colour = component_code(&self.payload[at * 4..at * 4 + 4]);

@@ -1,7 +1,7 @@
 //! Every field of the header, every chunk and every payload with a value it must not have: which error, where.
 
 use crate::files::{edited, envelopes, full, header, one_shot, plain, with_chunk};
-use ivg_format::{Encoding, Limits, RecordId, Verdict, codes, decode_all};
+use ivg_format::{Encoding, Event, Limits, RecordId, Verdict, codes, decode_all};
 use ivg_wire::{Code, codes as common};
 
 #[track_caller]
@@ -142,6 +142,31 @@ fn forbidden_direction_codes_are_refused_where_they_stand() {
         let good = edited(&file, |b| b[at..at + 3].copy_from_slice(&0xFFE_FFEu32.to_le_bytes()[..3]));
         assert_eq!(one_shot(&good).1, None);
     }
+}
+
+#[test]
+fn a_direction_outside_its_hemisphere_is_reported_by_validators_only() {
+    let file = plain([1, 3, 2], Encoding::PackedOct24, 1);
+    let header = header(&file);
+    let record = header.record_range(RecordId::Bundle(1)).start as usize;
+    let vertex = header.bundle_vertex(1, 0);
+    let outside = |file: &[u8]| {
+        let mut found = vec![];
+        decode_all(file, &Limits::default(), |event| {
+            if let Event::Corners(bundle) | Event::Bundle(bundle) = event {
+                found.extend(bundle.outside_hemisphere());
+            }
+        })
+        .unwrap();
+        found
+    };
+    assert_eq!(outside(&file), []);
+    // The third code, of hemisphere +y, becomes the axis +x: on the tangent plane.
+    let code = 4094u32 | 2047 << 12;
+    let at = record + 32 + 3 * 2;
+    let bad = edited(&file, |b| b[at..at + 3].copy_from_slice(&code.to_le_bytes()[..3]));
+    assert_eq!(outside(&bad), [(vertex.unwrap(), 2)]);
+    assert_eq!(outside(&plain([1, 3, 2], Encoding::VectorsF32, 1)), []);
 }
 
 #[test]
