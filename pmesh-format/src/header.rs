@@ -188,7 +188,7 @@ impl Header {
 
     /// Reads the packet directory from its chunk.
     fn read_directory(&mut self, chunk: &Chunk<'_>, packets: u32, limits: &Limits) -> Result<(), Error> {
-        if chunk.kind != DIRECTORY || !chunk.critical {
+        if chunk.kind != DIRECTORY {
             return Err(Error::new(codes::DIRECTORY_MISSING, chunk.offset, Part::Chunk(chunk.kind)));
         }
         let start = chunk.payload_offset().0;

@@ -163,3 +163,6 @@ impl PacketLayout {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,108 @@
+use std::string::String;
+use std::vec::Vec;
+
+use super::*;
+
+fn rows(key: &str) -> Vec<toml::Table> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/tables/pmesh.toml");
+    let table: toml::Table = std::fs::read_to_string(path).unwrap().parse().unwrap();
+    table[key].as_array().unwrap().iter().map(|row| row.as_table().unwrap().clone()).collect()
+}
+
+fn fields(key: &str) -> Vec<(String, u64)> {
+    let field = |row: &toml::Table| {
+        (row["name"].as_str().unwrap().into(), row["offset"].as_integer().unwrap().try_into().unwrap())
+    };
+    rows(key).iter().map(field).collect()
+}
+
+#[test]
+fn every_field_lies_where_the_specification_says() {
+    for (key, ours) in [("header", at::HEADER), ("entry", at::ENTRY)] {
+        let spec = fields(key);
+        assert!(
+            spec.iter().map(|(name, at)| (name.as_str(), *at)).eq(ours.iter().copied()),
+            "{key}: {spec:?}"
+        );
+    }
+}
+
+#[test]
+fn the_arrays_of_a_packet_follow_each_other_as_the_specification_says() {
+    let all = Attributes { normals: true, uvs: true, colours: true, materials: true, seams: true };
+    let counts = PacketCounts { vertices: 5, wedges: 7, faces: 11, splits: 3 };
+    let layout = PacketLayout::new(counts, all).unwrap();
+    let ours = [
+        ("positions", &layout.positions),
+        ("normals", &layout.normals),
+        ("uvs", &layout.uvs),
+        ("colours", &layout.colours),
+        ("corners", &layout.corners),
+        ("parents", &layout.parents),
+        ("materials", &layout.materials),
+    ];
+    let mut start = 0;
+    let spec = rows("payload");
+    let arrays = spec.iter().filter(|row| !["variable", "bits"].contains(&row["type"].as_str().unwrap()));
+    assert_eq!(arrays.clone().count(), ours.len());
+    for (row, (name, range)) in arrays.zip(ours) {
+        let count = match row["count"].as_str().unwrap() {
+            "v" => 5,
+            "w" => 7,
+            "f" => 11,
+            "s" => 3,
+            other => panic!("{other}"),
+        };
+        let bytes = match row["type"].as_str().unwrap() {
+            "f32[3]" | "u32[3]" => 12,
+            "f32[2]" => 8,
+            "u8[4]" | "u32" => 4,
+            "u16" => 2,
+            other => panic!("{other}"),
+        };
+        assert_eq!((row["name"].as_str().unwrap(), range.clone()), (name, start..start + count * bytes));
+        start += count * bytes;
+    }
+    assert_eq!(layout.rest, start);
+    // What a file does not have takes no room.
+    let none = PacketLayout::new(counts, Attributes::default()).unwrap();
+    assert_eq!(none.rest, 5 * 12 + 11 * 12 + 3 * 4);
+}
+
+#[test]
+fn attribute_bits_are_those_of_the_specification() {
+    let rows = rows("attributes");
+    assert_eq!(rows.len(), 5);
+    for (bit, row) in rows.iter().enumerate() {
+        assert_eq!(row["bit"].as_integer(), Some(bit as i64));
+        let one = Attributes::from_bits(1 << bit).unwrap();
+        let set = [
+            ("normals", one.normals),
+            ("uvs", one.uvs),
+            ("colours", one.colours),
+            ("materials", one.materials),
+            ("seams", one.seams),
+        ];
+        let named: Vec<&str> = set.into_iter().filter(|(_, set)| *set).map(|(name, _)| name).collect();
+        assert_eq!(named, [row["name"].as_str().unwrap()]);
+        assert_eq!(one.bits(), 1 << bit);
+    }
+    assert!((5..16).all(|bit| Attributes::from_bits(1 << bit).is_none()));
+}
+
+#[test]
+fn registries_name_what_this_crate_reads() {
+    for (key, described) in [("modes", MODE_RAW), ("positions", POSITIONS_F32)] {
+        for row in rows(key) {
+            let is_described = row["status"].as_str() == Some("described");
+            assert_eq!(is_described, row["id"].as_integer() == Some(described.into()), "{key}: {row:?}");
+        }
+    }
+    let chunks = rows("chunks");
+    let ours = [(DIRECTORY, true), (MATERIALS, false)];
+    assert_eq!(chunks.len(), ours.len());
+    for (row, (kind, critical)) in chunks.iter().zip(ours) {
+        assert_eq!(row["type"].as_str().unwrap().as_bytes(), kind.0);
+        assert_eq!(row["critical"].as_bool(), Some(critical));
+    }
+}
