@@ -106,13 +106,13 @@ impl<'a> Bundle<'a> {
     #[must_use]
     pub fn vertices(&self) -> Vertices {
         match self.id {
-            RecordId::Bundle(k) => Vertices::Bundle(self.header.bundle_vertices(k)),
+            RecordId::Bundle(k) => Vertices(Source::Bundle(self.header.bundle_vertices(k))),
             _ => {
                 let mut corners = [0; 8];
                 for (to, from) in corners.iter_mut().zip(self.header.lattice.corners()) {
                     *to = from;
                 }
-                Vertices::Corners { corners, next: 0, count: self.len }
+                Vertices(Source::Corners { corners, next: 0, count: self.len })
             }
         }
     }
@@ -211,20 +211,18 @@ fn direction_code(bytes: &[u8]) -> u32 {
     component_code(bytes)
 }
 
-/// The vertices of a record, in stored order.
+/// The vertices of a record, in stored order: an iterator over linear indices.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
-pub enum Vertices {
-    /// The lattice's corners, ascending.
+pub struct Vertices(Source);
+
+#[derive(Clone, Debug)]
+enum Source {
+    /// The first `count` of `corners`, from `next` on.
     Corners {
-        /// Their linear indices; the first `count` count.
         corners: [u64; 8],
-        /// The next to come.
         next: usize,
-        /// How many there are.
         count: usize,
     },
-    /// The vertices of a bundle.
     Bundle(BundleVertices),
 }
 
@@ -232,20 +230,20 @@ impl Iterator for Vertices {
     type Item = u64;
 
     fn next(&mut self) -> Option<u64> {
-        match self {
-            Self::Corners { corners, next, count } => {
-                let vertex = corners[..*count].get(*next).copied();
+        match &mut self.0 {
+            Source::Corners { corners, next, count } => {
+                let vertex = corners.get(*next).copied().filter(|_| next < count);
                 *next += usize::from(vertex.is_some());
                 vertex
             }
-            Self::Bundle(vertices) => vertices.next(),
+            Source::Bundle(vertices) => vertices.next(),
         }
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        match self {
-            Self::Corners { next, count, .. } => (count - next, Some(count - next)),
-            Self::Bundle(vertices) => vertices.size_hint(),
+        match &self.0 {
+            Source::Corners { next, count, .. } => (count - next, Some(count - next)),
+            Source::Bundle(vertices) => vertices.size_hint(),
         }
     }
 }

@@ -65,7 +65,10 @@ pub use decode::{BufferedDecoder, Decoder, Event, decode_all, decode_record};
 pub use encode::{EncodeError, EncodeOptions, GridSource, encode};
 pub use encoding::{Encoding, Order, Units};
 pub use header::{Header, RecordId, VALIDITY_BLOCK};
-pub use ivg_wire::{Error, Step, Verdict};
+pub use ivg_wire::{
+    ByteOffset, Chunk, ChunkKind, Code, ContentId, Error, ErrorKind, Limits as WireLimits, Part, Step,
+    Verdict,
+};
 pub use lattice::{Lattice, LatticeError};
 pub use limits::Limits;
 pub use metadata::{BakedLight, LIGHTS, METADATA, lights, metadata};
