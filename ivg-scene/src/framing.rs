@@ -13,7 +13,7 @@ const ROOM_SHARE: f64 = 0.3;
 const FOV_OUTSIDE: f64 = std::f64::consts::FRAC_PI_4;
 const FOV_INSIDE: f64 = 1.05;
 /// Room left around what is framed.
-const MARGIN: f64 = 1.08;
+const MARGIN: f64 = 1.04;
 /// Height of the eye in a room, as a share of its height.
 const EYE_HEIGHT: f64 = 0.6;
 

@@ -20,7 +20,8 @@ pub(crate) fn snapped_origin(min: DVec3, max: DVec3) -> DVec3 {
     }
     let step = 2f64.powi(extent.log2().ceil().clamp(-1000.0, 1000.0) as i32);
     let centre = 0.5 * min + 0.5 * max;
-    let origin = (centre / step).round() * step;
+    // Halves go down for either sign, so that moving by whole steps moves the origin too; [0, 1] keeps origin 0.
+    let origin = (centre / step - 0.5).ceil() * step;
     // Adding zero turns -0 into 0.
     if origin.is_finite() { origin + DVec3::ZERO } else { DVec3::ZERO }
 }

@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 pub mod demo;
+pub mod export;
 pub mod import;
 pub mod lights;
 

@@ -25,6 +25,7 @@ use std::path::{Path, PathBuf};
 use crate::{Scene, SceneError, lights};
 use compress::MAX_FILE_BYTES;
 use folder::Folder;
+pub(crate) use gltf::SKY_KEY;
 
 /// What may be said about an import besides the file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
