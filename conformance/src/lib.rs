@@ -1,7 +1,23 @@
-//! Conformance vectors and the oracles that tests and fuzz targets share.
+//! What every reader of our formats must do, as files and as functions.
+//!
+//! - [`vectors`] makes small files, right and wrong, with the verdict and the error code that a reader must give for each.
+//!   `cargo run -p conformance --bin generate` writes them to `conformance/vectors/`, with a manifest for readers in other
+//!   languages, and the seeds of the fuzz targets to `fuzz/corpus/`.
+//! - [`oracles`] says what must hold for any bytes whatever: the bodies of the fuzz targets, which the tests here call with
+//!   all vectors and seeds.
+//! - [`bounds`] asserts how much a reader may allocate; [`choices`] turns bytes into things to encode.
+//!
+//! ```
+//! use conformance::vectors::vectors;
+//!
+//! let refused = vectors().into_iter().find(|vector| vector.name == "x-115-trailing").expect("in the list");
+//! let error = ivg_format::decode_all(&refused.bytes, &ivg_format::Limits::default(), |_| {}).unwrap_err();
+//! assert_eq!((error.verdict(), Some(error.code())), (refused.verdict, refused.code));
+//! ```
 
 #![forbid(unsafe_code)]
 
 pub mod bounds;
 pub mod choices;
 pub mod oracles;
+pub mod vectors;

@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| ivg_scene::fuzz::scene_import(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| ivg_scene::fuzz_scene_import(data));

@@ -7,6 +7,8 @@ use ivg_wire::{Error, Step, Verdict};
 pub struct Seen {
     /// A hash of everything in the event.
     pub digest: u64,
+    /// Whether it is a record; the end record is none here.
+    pub is_record: bool,
     /// Whether the file ends with this event.
     pub is_end: bool,
 }
@@ -39,6 +41,10 @@ impl End {
 pub struct Transcript {
     /// A digest for each event.
     pub events: Vec<u64>,
+    /// How many of the events are records; the end record is not counted.
+    pub records: usize,
+    /// Whether the last event was the end of the file; bytes behind it may have been refused still.
+    pub has_ended: bool,
     /// Bytes that the events used.
     pub consumed: usize,
     /// How it ended.
@@ -60,7 +66,8 @@ pub fn transcribe(
     let mut pieces = pieces.into_iter();
     let mut next =
         |received: usize| pieces.next().map_or(data.len(), |length| data.len().min(received + length.max(1)));
-    let mut transcript = Transcript { events: Vec::new(), consumed: 0, end: End::NeedMore };
+    let mut transcript =
+        Transcript { events: Vec::new(), records: 0, has_ended: false, consumed: 0, end: End::NeedMore };
     let mut received = next(0);
     loop {
         let window = &data[transcript.consumed..received];
@@ -77,6 +84,8 @@ pub fn transcribe(
                 assert!(used <= window.len(), "an event of {used} bytes, {} are there", window.len());
                 transcript.consumed += used;
                 transcript.events.push(seen.digest);
+                transcript.records += usize::from(seen.is_record);
+                transcript.has_ended = seen.is_end;
                 if seen.is_end && transcript.consumed == data.len() {
                     transcript.end = End::Complete;
                     return transcript;

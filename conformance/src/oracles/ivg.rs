@@ -1,0 +1,139 @@
+//! What must hold of the reader of `.ivg` for any bytes.
+
+use super::stream::{End, Seen, Transcript, transcribe};
+use super::{digest, pieces, slice};
+use crate::bounds::{Bound, Budget};
+use ivg_format::{Bundle, Decoder, Event, Header, Limits, ValidityBlock, decode_all, decode_record};
+use ivg_wire::{Error, Part, Step, Verdict};
+use std::collections::BTreeSet;
+
+/// The decoder keeps no bytes and needs no tables: it may allocate nothing at all (spec/ivg.md, "Limits").
+const BUDGET: Budget =
+    Budget { held: Bound { fixed: 0, per_byte: 0 }, allocated: Bound { fixed: 0, per_byte: 0 } };
+
+/// What a caller sees who has all the bytes at once.
+#[must_use]
+pub fn read(data: &[u8]) -> Transcript {
+    read_in_pieces(data, [])
+}
+
+/// What a caller sees who gets the bytes in pieces of these lengths.
+#[must_use]
+pub fn read_in_pieces(data: &[u8], pieces: impl IntoIterator<Item = usize>) -> Transcript {
+    let mut decoder = Decoder::new(Limits::default());
+    transcribe(data, pieces, |window| Ok(decoder.push(window)?.map(|event| see(&event))))
+}
+
+fn see(event: &Event<'_>) -> Seen {
+    let (digest, is_record) = match event {
+        Event::Header(header) => (digest(("header", format!("{header:?}"))), false),
+        Event::Chunk(chunk) => {
+            (digest(("chunk", chunk.kind, chunk.critical, chunk.offset, chunk.payload)), false)
+        }
+        Event::Corners(bundle) | Event::Bundle(bundle) => (see_bundle(bundle), true),
+        Event::Validity(block) => (see_validity(block), true),
+        Event::End => (digest("end"), false),
+        other => panic!("an event that this oracle does not know: {other:?}"),
+    };
+    Seen { digest, is_record, is_end: matches!(event, Event::End) }
+}
+
+fn see_bundle(bundle: &Bundle<'_>) -> u64 {
+    let count = bundle.header().lattice.vertex_count();
+    let vertices: Vec<u64> = bundle.vertices().collect();
+    assert_eq!(vertices.len(), bundle.len());
+    assert!(vertices.iter().all(|&vertex| vertex < count), "a vertex outside the lattice");
+    let vectors: Vec<u32> = (0..bundle.len())
+        .flat_map(|n| bundle.vectors(n))
+        .flatten()
+        .flatten()
+        .map(|component| {
+            assert!(component.is_finite(), "a component that is {component}");
+            component.to_bits()
+        })
+        .collect();
+    digest((bundle.id(), bundle.generation(), bundle.payload(), vertices, vectors))
+}
+
+fn see_validity(block: &ValidityBlock<'_>) -> u64 {
+    let edges: Vec<u8> = (0..block.len()).map(|n| block.blocked_edges(n)).collect();
+    digest((block.id(), block.generation(), block.first_vertex(), block.validity(), edges))
+}
+
+/// Any bytes give events and a verdict, and allocate no more than the specification allows. Each record, read alone by its
+/// range, is the record of the stream. A whole file has every vertex once.
+///
+/// # Panics
+///
+/// When that does not hold.
+pub fn ivg_decode(data: &[u8]) {
+    let bare = BUDGET.spend("decoding .ivg", data.len(), || {
+        decode_all(data, &Limits::default(), |event| {
+            // Reading what an event shows must not allocate either.
+            if let Event::Bundle(bundle) | Event::Corners(bundle) = event {
+                assert_eq!(bundle.iter().map(std::hint::black_box).count(), bundle.len());
+            }
+        })
+    });
+    let transcript = read(data);
+    match (bare, transcript.end) {
+        (Ok(()), End::Complete) => every_vertex_once(data),
+        (Err(error), End::NeedMore) => assert_eq!(error.verdict(), Verdict::NeedMore),
+        (Err(error), End::Refused(streamed)) => assert_eq!(error, streamed),
+        (bare, end) => panic!("at once {bare:?}, in a stream {end:?}"),
+    }
+    if let Ok(Step::Consumed(_, header)) = Header::read(data, &Limits::default()) {
+        records_alone(data, &header, &transcript);
+    }
+}
+
+/// Compares each whole record, fetched by its range, with the event that the stream gave for it.
+fn records_alone(data: &[u8], header: &Header, transcript: &Transcript) {
+    // Only records and the end come after the first record.
+    let first_record = transcript.events.len() - transcript.records - usize::from(transcript.has_ended);
+    let mut streamed = transcript.events[first_record..].iter();
+    let mut end = header.data_offset;
+    for id in header.records() {
+        let range = header.record_range(id);
+        assert_eq!(range.start, end, "{id:?} does not begin where the record before it ends");
+        end = range.end;
+        let Some(bytes) = slice(data, range.start, range.end) else { return };
+        let alone: Result<u64, Error> = decode_record(header, id, bytes).map(|event| see(&event).digest);
+        match (streamed.next(), transcript.end) {
+            (Some(&streamed), _) => assert_eq!(alone, Ok(streamed), "{id:?} is another when read alone"),
+            (None, End::Refused(error)) => {
+                // Where the stream was refused at this record, so is the record; what is behind may be right or wrong.
+                if error.part() == Part::Record(id.stored()) {
+                    assert_eq!(alone, Err(error), "{id:?} is refused in the stream only");
+                }
+                return;
+            }
+            (None, end) => panic!("{id:?} is there, and the stream ended with {end:?}"),
+        }
+    }
+    assert_eq!(end, header.file_bytes, "the last record does not end with the file");
+}
+
+fn every_vertex_once(data: &[u8]) {
+    let mut seen = BTreeSet::new();
+    let mut count = 0;
+    let decoded = decode_all(data, &Limits::default(), |event| {
+        if let Event::Bundle(bundle) | Event::Corners(bundle) = event {
+            count = bundle.header().lattice.vertex_count();
+            for vertex in bundle.vertices() {
+                assert!(seen.insert(vertex), "vertex {vertex} comes twice");
+            }
+        }
+    });
+    assert_eq!(decoded, Ok(()));
+    assert_eq!(seen.len() as u64, count, "vertices are missing");
+}
+
+/// Any split of the bytes gives the same events, the same error, the same offset.
+///
+/// # Panics
+///
+/// When that does not hold.
+pub fn ivg_chunks(data: &[u8]) {
+    assert_eq!(read_in_pieces(data, pieces(data)), read(data));
+}

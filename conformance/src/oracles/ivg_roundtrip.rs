@@ -1,0 +1,175 @@
+//! What must hold of writer and reader of `.ivg` together, for any grid.
+
+use crate::choices::Choices;
+use ivg_format::quant::direction::decode_octahedral24;
+use ivg_format::quant::pack::pack_hemisphere;
+use ivg_format::{
+    BakedLight, EncodeError, EncodeOptions, Encoding, Event, GridSource, HemisphereVectors, Lattice, Limits,
+    Units, decode_all, encode, lights, metadata,
+};
+
+/// Vertices along an axis, at most: the longest grid then has 125 vertices, which keeps an input fast.
+const MOST_VERTICES: usize = 5;
+
+/// A grid made of the bytes is the same after encoding and decoding: exactly, or for a quantised encoding within half a step
+/// of each colour.
+///
+/// # Panics
+///
+/// When that does not hold.
+pub fn ivg_roundtrip(data: &[u8]) {
+    let mut choices = Choices::new(data);
+    let grid = Grid::choose(&mut choices);
+    let options = choose_options(&mut choices);
+    let source = grid.source();
+    let file = match encode(&source, &options) {
+        // Too large for the exponent of the packed colours, as it may be.
+        Err(EncodeError::TooLarge { .. }) if options.encoding == Encoding::PackedOct24 => return,
+        result => result.unwrap_or_else(|error| panic!("a sound grid is refused: {error}")),
+    };
+    assert_eq!(encode(&source, &options).as_ref(), Ok(&file), "encoded twice, and the bytes differ");
+    grid.compare(&file, &options);
+}
+
+fn choose_options(choices: &mut Choices<'_>) -> EncodeOptions {
+    EncodeOptions {
+        encoding: Encoding::ALL[choices.below(Encoding::ALL.len())],
+        vertices_per_slice: 1 + choices.below(30) as u32,
+        seed: choices.long(),
+        units: if choices.byte() < 128 { Units::Radiometric } else { Units::Photometric },
+        ..EncodeOptions::default()
+    }
+}
+
+/// A grid that owns its arrays.
+struct Grid {
+    lattice: Lattice,
+    vectors: Vec<HemisphereVectors>,
+    validity: Option<Vec<u8>>,
+    blocked_edges: Option<Vec<u8>>,
+    lights: &'static [BakedLight<'static>],
+    meta: &'static [(&'static str, &'static str)],
+}
+
+const LIGHTS: [BakedLight<'_>; 2] = [
+    BakedLight { name: "lamp", direct_included: false },
+    BakedLight { name: "Fenster über dem Tisch", direct_included: true },
+];
+const META: [(&str, &str); 2] = [("generator", "a test"), ("photons", "")];
+
+impl Grid {
+    fn choose(choices: &mut Choices<'_>) -> Self {
+        let dims = [0; 3].map(|_: u16| 1 + choices.below(MOST_VERTICES) as u16);
+        let min = [0; 3].map(|_| f64::from(choices.byte()) - 128.0);
+        let extent = [0; 3].map(|_| f64::from(choices.byte()) / 16.0 + 0.5);
+        let max = [0, 1, 2].map(|axis| min[axis] + extent[axis]);
+        let lattice = Lattice::new(dims, min, max).expect("finite bounds with an extent");
+        let count = lattice.vertex_count() as usize;
+        let flags = choices.byte();
+        let validity = (flags & 1 != 0).then(|| (0..count).map(|_| choices.byte()).collect());
+        let blocked_edges = (flags & 2 != 0).then(|| {
+            let inside = |vertex: usize| {
+                let coordinates = lattice.coords(vertex as u64);
+                (0..3)
+                    .filter(|&axis| coordinates[axis] + 1 < dims[axis])
+                    .fold(0, |bits, axis| bits | 1 << axis)
+            };
+            (0..count).map(|vertex| choices.byte() & inside(vertex)).collect()
+        });
+        let lights = &LIGHTS[..usize::from(flags >> 2) % 3];
+        let meta = &META[..usize::from(flags >> 4) % 3];
+        // Numbers of every size; zeros once the bytes are used up.
+        let mut vectors = vec![HemisphereVectors::default(); count];
+        vectors.iter_mut().flatten().flatten().flatten().for_each(|component| *component = choices.finite());
+        Self { lattice, vectors, validity, blocked_edges, lights, meta }
+    }
+
+    fn source(&self) -> GridSource<'_> {
+        GridSource {
+            lattice: self.lattice,
+            vectors: &self.vectors,
+            validity: self.validity.as_deref(),
+            blocked_edges: self.blocked_edges.as_deref(),
+            lights: self.lights,
+            meta: self.meta,
+        }
+    }
+
+    fn compare(&self, file: &[u8], options: &EncodeOptions) {
+        let count = self.vectors.len();
+        let mut received = vec![false; count];
+        let mut validity = vec![255; count];
+        let mut edges = vec![0; count];
+        let mut chunks = 0;
+        let decoded = decode_all(file, &Limits::default(), |event| match event {
+            Event::Header(header) => {
+                assert_eq!(header.lattice, self.lattice);
+                assert_eq!(header.file_bytes, file.len() as u64);
+                assert_eq!(
+                    (header.encoding, header.units, header.seed, header.vertices_per_slice),
+                    (options.encoding, options.units, options.seed, options.vertices_per_slice)
+                );
+            }
+            Event::Chunk(chunk) if chunk.kind == ivg_format::LIGHTS => {
+                assert!(lights(&chunk).expect("well formed").eq(self.lights.iter().copied()));
+                chunks += 1;
+            }
+            Event::Chunk(chunk) => {
+                assert!(metadata(&chunk).expect("well formed").eq(self.meta.iter().copied()));
+                chunks += 1;
+            }
+            Event::Validity(block) => {
+                let first = block.first_vertex() as usize;
+                validity[first..first + block.len()].copy_from_slice(block.validity());
+                (0..block.len()).for_each(|n| edges[first + n] = block.blocked_edges(n));
+            }
+            Event::Corners(bundle) | Event::Bundle(bundle) => {
+                for (n, vertex) in bundle.vertices().enumerate() {
+                    let vertex = vertex as usize;
+                    assert!(!std::mem::replace(&mut received[vertex], true), "vertex {vertex} comes twice");
+                    match bundle.packed(n) {
+                        None => assert_eq!(bits(&bundle.vectors(n)), bits(&self.vectors[vertex])),
+                        Some(packed) => {
+                            let exponent = bundle.header().scale_exponent;
+                            compare_packed(&self.vectors[vertex], &packed, &bundle.vectors(n), exponent);
+                        }
+                    }
+                }
+            }
+            _ => {}
+        });
+        assert_eq!(decoded, Ok(()), "what the encoder wrote is refused");
+        assert!(received.iter().all(|&received| received), "vertices are missing");
+        assert_eq!(chunks, usize::from(!self.lights.is_empty()) + usize::from(!self.meta.is_empty()));
+        assert_eq!(validity, self.validity.clone().unwrap_or(vec![255; count]));
+        assert_eq!(edges, self.blocked_edges.clone().unwrap_or(vec![0; count]));
+    }
+}
+
+fn bits(vectors: &HemisphereVectors) -> Vec<u32> {
+    vectors.iter().flatten().flatten().map(|component| component.to_bits()).collect()
+}
+
+/// Directions are those that packing chooses; colours are those that packing chooses within the rounding of RGB9E5: half a
+/// step is at most 1/512 of the largest component, or 2^-25 before scaling, whichever is more.
+fn compare_packed(
+    original: &HemisphereVectors,
+    packed: &[([f32; 3], [f32; 3]); 6],
+    vectors: &HemisphereVectors,
+    scale_exponent: i16,
+) {
+    for (hemisphere, ((direction, colour), vectors)) in packed.iter().zip(vectors).enumerate() {
+        let expected = pack_hemisphere(&original[hemisphere], hemisphere).expect("finite");
+        assert_eq!(Some(*direction), decode_octahedral24(expected.direction));
+        let largest = expected.colour.iter().copied().fold(0.0, f64::max);
+        let half_step = (largest / 512.0).max(f64::from(scale_exponent - 25).exp2());
+        for (channel, (&colour, expected)) in colour.iter().zip(expected.colour).enumerate() {
+            let error = (f64::from(colour) - expected).abs();
+            assert!(
+                error <= half_step,
+                "colour {colour} for {expected}: off by {error}, at most {half_step}"
+            );
+            assert_eq!(vectors[channel], direction.map(|d| colour * d));
+        }
+    }
+}

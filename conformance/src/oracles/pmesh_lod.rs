@@ -1,0 +1,80 @@
+//! What must hold of the levels of a `.pmesh`.
+
+use super::PIECE_CHOICES;
+use pmesh_format::{BufferedDecoder, IndexedMesh, LevelChange, Limits, Replay, check_level};
+
+/// How many levels are visited.
+const VISITS: usize = 12;
+
+/// The mesh at a level does not depend on the way there, nor on how many packets have arrived; it is valid; and what a change of
+/// level reports is all that a copy of the index buffer needs.
+///
+/// The last bytes of the input, which lie behind the file or in its end record, choose the levels.
+///
+/// # Panics
+///
+/// When that does not hold.
+pub fn pmesh_lod(data: &[u8]) {
+    let Some(mut whole) = replay_all(data) else { return };
+    let choices = &data[data.len() - data.len().min(PIECE_CHOICES)..];
+    let levels = choices.iter().cycle().take(VISITS).map(|&choice| u32::from(choice));
+
+    let packets = whole.packets();
+    let mut partial = Replay::default();
+    let mut copy = Vec::new();
+    let mut visit = |replay: &mut Replay, change: &LevelChange| {
+        update(&mut copy, replay, change);
+        let level = replay.level();
+        let mesh = replay.mesh();
+        check_level(&mesh).unwrap_or_else(|fault| panic!("level {level}: {fault}"));
+        assert_eq!(mesh.positions.len() as u32, level);
+        assert_eq!(mesh, at_level(&mut whole, level), "level {level} depends on the way there");
+    };
+    feed(data, |event| {
+        if partial.packets() == packets {
+            return;
+        }
+        let Some(change) = partial.accept(event).expect("it was accepted before") else { return };
+        visit(&mut partial, &change);
+        for choice in levels.clone() {
+            let range = partial.levels().expect("a packet is in");
+            let level = range.start() + choice % (range.end() - range.start() + 1);
+            let change = partial.set_level(level).expect("a level that is there");
+            assert_eq!(change.to, level);
+            visit(&mut partial, &change);
+        }
+    });
+}
+
+/// The mesh at a level, reached from below: from the coarsest level.
+fn at_level(replay: &mut Replay, level: u32) -> IndexedMesh {
+    let coarsest = *replay.levels().expect("packets are in").start();
+    replay.set_level(coarsest).expect("the coarsest level");
+    replay.set_level(level).expect("a level of the whole file");
+    replay.mesh()
+}
+
+/// Does to a copy of the index buffer what a renderer does that copies only what is said to have changed.
+fn update(copy: &mut Vec<[u32; 3]>, replay: &Replay, change: &LevelChange) {
+    let indices = replay.indices();
+    copy.resize(indices.len(), [u32::MAX; 3]);
+    for range in &change.changed {
+        let range = range.start as usize..range.end as usize;
+        copy[range.clone()].copy_from_slice(&indices[range]);
+    }
+    assert_eq!(copy, indices, "a change from level {} to {} is incomplete", change.from, change.to);
+}
+
+/// All valid packets of the file replayed; `None` if there is none.
+fn replay_all(data: &[u8]) -> Option<Replay> {
+    let mut replay = Replay::default();
+    let mut is_sound = true;
+    feed(data, |event| is_sound = is_sound && replay.accept(event).is_ok());
+    (replay.packets() > 0).then_some(replay)
+}
+
+/// Shows the events of the file up to the first error.
+fn feed(data: &[u8], mut visit: impl FnMut(&pmesh_format::Event<'_>)) {
+    // An error ends the file; what came before it counts.
+    let _: Result<(), _> = BufferedDecoder::new(Limits::default()).feed(data, |event| visit(&event));
+}

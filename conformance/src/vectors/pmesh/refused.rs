@@ -1,0 +1,463 @@
+//! Files of `.pmesh` to refuse.
+
+use super::super::edit::{
+    DATA_OFFSET_AT, FILE_BYTES_AT, HEADER_BYTES_AT, flipped, in_envelope, in_header, last_chunk, lengthened,
+    overwritten, read_u64, with_chunk,
+};
+use super::super::{Format, Refused, Vector};
+use super::{CHUNK_HEAD, OCTAHEDRON, ONE_PACKET, RECORD_HEAD, SEAM, at, entry, header, packet};
+use ivg_wire::codes as wire;
+use pmesh_format::codes as mesh;
+
+pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
+    let twin = |name: &str| &accepted.iter().find(|vector| vector.name == name).expect("a name").bytes[..];
+    let octahedron = twin(OCTAHEDRON);
+    let mut list = container(octahedron);
+    list.extend(headers(octahedron));
+    list.extend(directory(octahedron));
+    list.extend(names(twin(SEAM)));
+    list.extend(numbers(octahedron, twin(SEAM)));
+    list.extend(topology(octahedron, twin(ONE_PACKET)));
+    list.extend(wedges(twin(SEAM)));
+    list.extend(switches(octahedron, twin(SEAM)));
+    list.into_iter().map(|refused| Vector::refused(Format::Pmesh, refused)).collect()
+}
+
+fn container(file: &[u8]) -> Vec<Refused> {
+    let o = OCTAHEDRON;
+    let first = packet(file, 0);
+    let end = file.len() - 20..file.len();
+    let longer = ((read_u64(file, FILE_BYTES_AT) + 4) as u64).to_le_bytes();
+    let no_chunks = in_header(file, DATA_OFFSET_AT, &(at::END as u64).to_le_bytes());
+    vec![
+        (o, "signature", wire::MAGIC, overwritten(file, 1, b"IVG"), "the signature of another format"),
+        (o, "major", wire::MAJOR_VERSION, in_header(file, at::MAJOR, &[1]), "another major version"),
+        (
+            o,
+            "feature",
+            wire::REQUIRED_FEATURE,
+            in_header(file, at::REQUIRED_FEATURES, &[1]),
+            "an unknown required feature",
+        ),
+        (
+            o,
+            "header-bytes",
+            wire::HEADER_BYTES,
+            overwritten(file, HEADER_BYTES_AT, &[120]),
+            "a header length of another version",
+        ),
+        (
+            o,
+            "header-checksum",
+            wire::HEADER_CHECKSUM,
+            flipped(file, at::CHECKSUM),
+            "a bit of the header's checksum",
+        ),
+        (
+            o,
+            "attributes",
+            wire::RESERVED,
+            in_header(file, at::ATTRIBUTES, &[0x20]),
+            "a reserved bit of the attributes",
+        ),
+        (
+            o,
+            "file-bytes",
+            wire::FILE_BYTES,
+            in_header(file, FILE_BYTES_AT, &longer),
+            "the file length does not follow from the directory",
+        ),
+        (
+            o,
+            "chunk-checksum",
+            wire::CHUNK_CHECKSUM,
+            flipped(file, at::END + CHUNK_HEAD),
+            "a bit of the directory",
+        ),
+        (
+            o,
+            "chunk-critical",
+            wire::CHUNK_CRITICAL,
+            with_chunk(file, b"MUST", true, b""),
+            "a critical chunk of unknown type",
+        ),
+        (
+            o,
+            "directory-repeated",
+            wire::CHUNK_REPEATED,
+            with_chunk(file, b"PDIR", true, b""),
+            "a second directory",
+        ),
+        (
+            o,
+            "record-checksum",
+            wire::RECORD_CHECKSUM,
+            flipped(file, first.start + RECORD_HEAD),
+            "a bit of a packet",
+        ),
+        (
+            o,
+            "record-id",
+            wire::RECORD_ID,
+            in_envelope(file, first.clone(), first.start, &[1]),
+            "packet 1 where packet 0 belongs",
+        ),
+        (
+            o,
+            "record-generation",
+            wire::RESERVED,
+            in_envelope(file, first.clone(), first.start + 4, &[1]),
+            "a packet that came again",
+        ),
+        (
+            o,
+            "end",
+            wire::END_MISMATCH,
+            in_envelope(file, end.clone(), end.start + RECORD_HEAD, &[0]),
+            "the end record names another length",
+        ),
+        (o, "trailing", wire::TRAILING_BYTES, [file, &[0]].concat(), "a byte behind the end record"),
+        (o, "no-directory", mesh::DIRECTORY_MISSING, no_chunks, "records begin where the directory should"),
+    ]
+}
+
+fn headers(file: &[u8]) -> Vec<Refused> {
+    let o = OCTAHEDRON;
+    let edited = |field: usize, bytes: &[u8]| in_header(file, field, bytes);
+    let count = |field: usize, count: u32| edited(field, &count.to_le_bytes());
+    let nan = f32::NAN.to_le_bytes();
+    let declared = |vertices: u32| {
+        let file = overwritten(file, at::WEDGE_COUNT, &vertices.to_le_bytes());
+        in_header(&file, at::VERTEX_COUNT, &vertices.to_le_bytes())[..at::END].to_vec()
+    };
+    vec![
+        (
+            o,
+            "vertex-count",
+            mesh::COUNTS,
+            count(at::VERTEX_COUNT, (1 << 30) + 1),
+            "more vertices than the format holds",
+        ),
+        (
+            o,
+            "wedge-count",
+            mesh::COUNTS,
+            count(at::WEDGE_COUNT, 7),
+            "more wedges than vertices, and no attributes",
+        ),
+        (o, "face-count", mesh::COUNTS, count(at::FACE_COUNT, u32::MAX), "more faces than the format holds"),
+        (o, "base-0", mesh::COUNTS, count(at::BASE_VERTICES, 0), "vertices without a base"),
+        (
+            o,
+            "base-above",
+            mesh::COUNTS,
+            count(at::BASE_VERTICES, 7),
+            "more vertices in the base than there are",
+        ),
+        (o, "packets-0", mesh::COUNTS, count(at::PACKET_COUNT, 0), "vertices without a packet"),
+        (o, "packets-many", mesh::COUNTS, count(at::PACKET_COUNT, 5), "more packets than splits and one"),
+        (o, "mode-0", mesh::MODE_FORBIDDEN, edited(at::MODE, &[0]), "mode 0 does not exist"),
+        (o, "mode-unknown", mesh::MODE_UNKNOWN, edited(at::MODE, &[200]), "a mode that nobody has defined"),
+        (
+            o,
+            "positions-0",
+            mesh::POSITIONS_FORBIDDEN,
+            edited(at::POSITIONS, &[0]),
+            "position encoding 0 does not exist",
+        ),
+        (
+            o,
+            "positions-unknown",
+            mesh::POSITIONS_UNKNOWN,
+            edited(at::POSITIONS, &[200]),
+            "an encoding of positions that nobody has defined",
+        ),
+        (
+            o,
+            "origin",
+            mesh::ORIGIN,
+            edited(at::ORIGIN + 8, &f64::INFINITY.to_le_bytes()),
+            "an origin at infinity",
+        ),
+        (o, "bounds-nan", mesh::BOUNDS, edited(at::BOUNDS_MIN, &nan), "bounds that are no number"),
+        (
+            o,
+            "bounds-crossed",
+            mesh::BOUNDS,
+            edited(at::BOUNDS_MAX + 4, &(-2.0f32).to_le_bytes()),
+            "bounds that are inside out",
+        ),
+        (o, "limit-counts", mesh::LIMIT_COUNTS, declared(1 << 30), "1,073,741,824 vertices in 128 bytes"),
+    ]
+}
+
+fn directory(file: &[u8]) -> Vec<Refused> {
+    let o = OCTAHEDRON;
+    let packets = header(file).packets.len();
+    let chunk = last_chunk(file, packets * entry::BYTES);
+    let edited = |at: usize, bytes: &[u8]| in_envelope(file, chunk.clone(), chunk.start + at, bytes);
+    let field =
+        |k: usize, field: usize, bytes: [u8; 4]| edited(CHUNK_HEAD + k * entry::BYTES + field, &bytes);
+    let number = |k: usize, at: usize, value: u32| field(k, at, value.to_le_bytes());
+    let error = |k: usize, value: f32| field(k, entry::ERROR, value.to_le_bytes());
+    vec![
+        (
+            o,
+            "directory-kind",
+            mesh::DIRECTORY_MISSING,
+            edited(0, b"NEWS"),
+            "another chunk where the directory belongs",
+        ),
+        (
+            o,
+            "directory-short",
+            mesh::DIRECTORY_LENGTH,
+            number_of_packets(file, packets - 1),
+            "an entry more than there are packets",
+        ),
+        (
+            o,
+            "entry-order",
+            mesh::DIRECTORY_COUNTS,
+            number(1, entry::END_VERTEX, 3),
+            "a packet without a vertex",
+        ),
+        (
+            o,
+            "entry-base",
+            mesh::DIRECTORY_COUNTS,
+            number(0, entry::END_VERTEX, 2),
+            "a first packet without the whole base",
+        ),
+        (
+            o,
+            "entry-vertices",
+            mesh::DIRECTORY_COUNTS,
+            number(packets - 1, entry::END_VERTEX, 9),
+            "more vertices than the header says",
+        ),
+        (
+            o,
+            "entry-wedges",
+            mesh::DIRECTORY_COUNTS,
+            number(0, entry::END_WEDGE, 4),
+            "more wedges than vertices",
+        ),
+        (
+            o,
+            "entry-faces",
+            mesh::DIRECTORY_COUNTS,
+            number(packets - 1, entry::END_FACE, 0),
+            "fewer faces than before",
+        ),
+        (
+            o,
+            "entry-missing-face",
+            mesh::DIRECTORY_COUNTS,
+            number(packets - 1, entry::END_FACE, 7),
+            "fewer faces than the header says",
+        ),
+        (
+            o,
+            "entry-bytes",
+            mesh::DIRECTORY_BYTES,
+            number(0, entry::PAYLOAD_BYTES, 8),
+            "a packet too short for its positions",
+        ),
+        (
+            o,
+            "entry-bytes-huge",
+            mesh::DIRECTORY_BYTES,
+            number(0, entry::PAYLOAD_BYTES, u32::MAX),
+            "a packet longer than a record may be",
+        ),
+        (
+            o,
+            "entry-bytes-limit",
+            wire::LIMIT_RECORD_BYTES,
+            number(0, entry::PAYLOAD_BYTES, 1 << 30),
+            "a packet of 1 GiB",
+        ),
+        (o, "entry-error-nan", mesh::DIRECTORY_ERROR, error(0, f32::NAN), "an error that is no number"),
+        (o, "entry-error-negative", mesh::DIRECTORY_ERROR, error(packets - 1, -1.0), "a negative error"),
+        (
+            o,
+            "entry-error-rises",
+            mesh::DIRECTORY_ERROR,
+            error(1, 1000.0),
+            "an error greater than that of the packet before",
+        ),
+    ]
+}
+
+fn number_of_packets(file: &[u8], packets: usize) -> Vec<u8> {
+    in_header(file, at::PACKET_COUNT, &(packets as u32).to_le_bytes())
+}
+
+fn names(file: &[u8]) -> Vec<Refused> {
+    // Two names: lengths of two bytes, and 5 and 6 bytes.
+    let chunk = last_chunk(file, 15);
+    let edited =
+        |at: usize, byte: u8| in_envelope(file, chunk.clone(), chunk.start + CHUNK_HEAD + at, &[byte]);
+    let twice = with_chunk(file, b"MTRL", false, b"");
+    vec![
+        (SEAM, "name-length", mesh::MATERIAL_NAMES, edited(7, 9), "a name that goes beyond the chunk"),
+        (SEAM, "name-utf8", mesh::MATERIAL_NAMES, edited(10, 0xFF), "a name that is not UTF-8"),
+        (SEAM, "names-repeated", wire::CHUNK_REPEATED, twice, "names of materials twice"),
+    ]
+}
+
+/// An edit in the payload of a packet.
+fn in_packet(file: &[u8], k: u32, at: usize, bytes: &[u8]) -> Vec<u8> {
+    let record = packet(file, k);
+    in_envelope(file, record.clone(), record.start + RECORD_HEAD + at, bytes)
+}
+
+fn numbers(file: &[u8], seam: &[u8]) -> Vec<Refused> {
+    let position = |value: f32| in_packet(file, 0, 12, &value.to_le_bytes());
+    // Behind the positions of three vertices.
+    let normal = |value: f32| in_packet(seam, 0, 3 * 12, &value.to_le_bytes());
+    vec![
+        (OCTAHEDRON, "position-nan", mesh::POSITION, position(f32::NAN), "a position that is no number"),
+        (OCTAHEDRON, "position-outside", mesh::POSITION, position(1.5), "a position outside the bounds"),
+        (SEAM, "normal-nan", mesh::ATTRIBUTE, normal(f32::NAN), "a normal that is no number"),
+    ]
+}
+
+fn topology(file: &[u8], one_packet: &[u8]) -> Vec<Refused> {
+    let o = OCTAHEDRON;
+    let header = header(file);
+    // Of the packet: positions, corners of its faces, parents; the file has no attributes.
+    let last = header.packet_count() - 1;
+    let counts = |k: u32| (header.packets[k as usize].vertices.len(), header.packets[k as usize].faces.len());
+    let corners = |k: u32| counts(k).0 * 12;
+    let parents = |k: u32| corners(k) + counts(k).1 * 12;
+    let corner = |k: u32, n: usize, wedge: u32| in_packet(file, k, corners(k) + n * 4, &wedge.to_le_bytes());
+    let parent = |k: u32, vertex: u32| in_packet(file, k, parents(k), &vertex.to_le_bytes());
+    let own = header.packets[last as usize].vertices.start;
+    vec![
+        (o, "parent-itself", mesh::PARENT, parent(last, own), "a vertex that collapses onto itself"),
+        (
+            o,
+            "parent-later",
+            mesh::PARENT,
+            parent(1, own),
+            "a vertex that collapses onto one that has not arrived",
+        ),
+        (o, "corner", mesh::CORNER, corner(1, 0, u32::MAX), "a face that names a wedge that has not arrived"),
+        (
+            o,
+            "face-twice",
+            mesh::FACE_VERTICES,
+            same_corners(file, last, corners(last)),
+            "a face with one vertex twice",
+        ),
+        // The last vertex collapses onto vertex 1, which is then no corner of the face.
+        (o, "face-level", mesh::FACE_LEVEL, corner(last, 0, 2), "a face that exists before its last vertex"),
+        (
+            ONE_PACKET,
+            "face-order",
+            mesh::FACE_ORDER,
+            first_face_last(one_packet),
+            "the faces in another order",
+        ),
+    ]
+}
+
+/// The second corner of the first face of a packet is the first one again.
+fn same_corners(file: &[u8], k: u32, corners: usize) -> Vec<u8> {
+    let start = packet(file, k).start + RECORD_HEAD + corners;
+    let first: [u8; 4] = *file[start..].first_chunk().expect("a corner");
+    in_packet(file, k, corners + 4, &first)
+}
+
+/// Exchanges the first and the last face of a file of one packet with six vertices, texture coordinates and colours.
+fn first_face_last(file: &[u8]) -> Vec<u8> {
+    let (corners, face) = (6 * (12 + 8 + 4), 12);
+    let last = corners + 7 * face;
+    let start = packet(file, 0).start + RECORD_HEAD;
+    let bytes = |at: usize| &file[start + at..][..face];
+    let once = in_packet(file, 0, corners, bytes(last));
+    in_packet(&once, 0, last, bytes(corners))
+}
+
+/// Where the numbers of variable length of a packet of the folded strip begin: behind positions, normals, corners, parents and
+/// materials.
+fn varints(file: &[u8], k: u32) -> usize {
+    let header = header(file);
+    let entry = &header.packets[k as usize];
+    let splits = entry.vertices.end - entry.vertices.start.max(header.base_vertices);
+    12 * (entry.vertices.len() + entry.wedges.len()) + (12 + 2) * entry.faces.len() + 4 * splits as usize
+}
+
+fn wedges(file: &[u8]) -> Vec<Refused> {
+    // The first packet has vertices of one, two and two wedges; the last has one vertex of two, and where these go.
+    let count = varints(file, 0);
+    let target = varints(file, 2) + 1;
+    vec![
+        (
+            SEAM,
+            "wedges-many",
+            mesh::WEDGE_COUNT,
+            in_packet(file, 0, count, &[2]),
+            "more wedges than the packet has",
+        ),
+        (SEAM, "wedges-0", mesh::WEDGE_COUNT, in_packet(file, 0, count, &[0]), "a vertex without a wedge"),
+        (
+            SEAM,
+            "varint",
+            mesh::VARINT,
+            in_packet(file, 2, target, &[0x80, 0x00]),
+            "a number longer than it needs to be",
+        ),
+        (
+            SEAM,
+            "wedge-target",
+            mesh::WEDGE_TARGET,
+            in_packet(file, 2, target, &[2]),
+            "a wedge that the parent does not have",
+        ),
+    ]
+}
+
+fn switches(file: &[u8], seam: &[u8]) -> Vec<Refused> {
+    let header = header(file);
+    let last = header.packet_count() - 1;
+    let end = header.packets[last as usize].payload_bytes as usize;
+    let byte = file[packet(file, last).start + RECORD_HEAD + end - 1];
+    let padding = in_packet(file, last, end - 1, &[byte | 0x80]);
+    // Two codes of two bits: to wedge 2 on the wall, to wedge 1 on the floor.
+    let codes = varints(seam, 2) + 3;
+    let code = |bits: u8| in_packet(seam, 2, codes, &[bits]);
+    vec![
+        (OCTAHEDRON, "switch-padding", mesh::SWITCH_PADDING, padding, "a bit behind the last switch code"),
+        (SEAM, "switch-high", mesh::SWITCH, code(0b01_11), "a switch code above the number of wedges"),
+        (
+            SEAM,
+            "switch-crossed",
+            mesh::SWITCH,
+            code(0b10_01),
+            "the floor switches to the wall's wedge and the wall to the floor's",
+        ),
+        (
+            OCTAHEDRON,
+            "switch-long",
+            mesh::SWITCH_LENGTH,
+            longer_packet(file),
+            "bytes behind the switch codes",
+        ),
+    ]
+}
+
+/// Adds four bytes to the last packet, as directory, header and end record say.
+fn longer_packet(file: &[u8]) -> Vec<u8> {
+    let header = header(file);
+    let k = header.packets.len() - 1;
+    let record = packet(file, k as u32);
+    let length = header.packets[k].payload_bytes;
+    let chunk = last_chunk(file, header.packets.len() * entry::BYTES);
+    let at = chunk.start + CHUNK_HEAD + k * entry::BYTES + entry::PAYLOAD_BYTES;
+    let payload_end = record.start + RECORD_HEAD + length as usize;
+    let file = in_envelope(file, chunk, at, &(length + 4).to_le_bytes());
+    lengthened(&file, record, payload_end, &[0; 4])
+}
