@@ -80,4 +80,4 @@ pub use mesh::{IndexedMesh, LevelFault, Wedges, check_level};
 pub use packet::Packet;
 pub use progressive::ProgressiveMesh;
 pub use replay::{LevelChange, LevelError, Replay};
-pub use wire::{DIRECTORY, HEADER_BYTES, MATERIALS};
+pub use wire::{DIRECTORY, HEADER_BYTES, MAJOR, MATERIALS};

@@ -169,3 +169,6 @@ pub fn check_level(mesh: &IndexedMesh) -> Result<(), LevelFault> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

@@ -274,3 +274,6 @@ fn floats<const N: usize>(from: &[u8]) -> [f32; N] {
 fn indices(from: &[u8]) -> [u32; 3] {
     core::array::from_fn(|k| number(&from[4 * k..4 * k + 4]))
 }
+
+#[cfg(test)]
+mod tests;

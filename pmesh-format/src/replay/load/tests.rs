@@ -1,0 +1,156 @@
+//! One defect each in a packet that is otherwise right: which code, at which byte of the payload.
+
+use std::collections::BTreeSet;
+use std::vec;
+use std::vec::Vec;
+
+use crate::decode::{check, decode_all};
+use crate::encode::{EncodeOptions, encode};
+use crate::limits::Limits;
+use crate::mesh::Wedges;
+use crate::progressive::ProgressiveMesh;
+use crate::replay::Replay;
+use crate::tests::Parts;
+
+/// Vertex k collapses onto k − 1, face k is (k, k + 1, k + 2). The payload of one packet: positions 0, corners 60, parents
+/// 96, switch codes (2 bits) 104.
+fn strip() -> ProgressiveMesh {
+    ProgressiveMesh {
+        positions: (0..5u16).map(|v| [f32::from(v), f32::from(v % 2), 0.0]).collect(),
+        wedges: Wedges { vertices: (0..5).collect(), ..Wedges::default() },
+        base_vertices: 3,
+        collapse: vec![2, 3],
+        wedge_collapse: vec![2, 3],
+        errors: vec![0.5, 0.25],
+        faces: vec![[0, 1, 2], [1, 2, 3], [2, 3, 4]],
+        ..ProgressiveMesh::default()
+    }
+}
+
+/// Two vertices with two wedges each, of which the last collapses onto the other; both faces of the base switch. Positions 0,
+/// texture coordinates 48, corners 96, parents 132, wedge counts 136, wedge targets 140, switch codes (2 of 2 bits) 142.
+fn seam() -> ProgressiveMesh {
+    ProgressiveMesh {
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]],
+        wedges: Wedges { vertices: vec![0, 1, 2, 2, 3, 3], uvs: vec![[0.0; 2]; 6], ..Wedges::default() },
+        base_vertices: 3,
+        collapse: vec![2],
+        wedge_collapse: vec![2, 3],
+        errors: vec![0.5],
+        faces: vec![[0, 1, 4], [1, 0, 5], [0, 2, 4]],
+        ..ProgressiveMesh::default()
+    }
+}
+
+fn parts(mesh: &ProgressiveMesh, packet: u32) -> Parts {
+    Parts::of(&encode(mesh, &EncodeOptions::fixed(packet)).unwrap())
+}
+
+fn put(payload: &mut [u8], at: usize, bytes: &[u8]) {
+    payload[at..at + bytes.len()].copy_from_slice(bytes);
+}
+
+fn put32(payload: &mut [u8], at: usize, values: &[u32]) {
+    for (k, value) in values.iter().enumerate() {
+        put(payload, at + 4 * k, &value.to_le_bytes());
+    }
+}
+
+#[test]
+fn payloads_are_laid_out_as_these_tests_take_them() {
+    assert_eq!(parts(&strip(), 5).packets[0].2.len(), 105);
+    let seam = parts(&seam(), 4);
+    assert_eq!(seam.packets[0].2.len(), 143);
+    // Canonical order is descending: slot 5 (face 1) switches to wedge 2 of the new vertex, slot 2 (face 0) to wedge 1.
+    assert_eq!(seam.packets[0].2[136..], [1, 1, 2, 2, 0, 1, 0b01_10]);
+}
+
+#[test]
+fn every_defect_of_a_packet_has_its_code_and_its_place() {
+    type Spoil = fn(&mut Vec<u8>);
+    let in_strip: Vec<(&str, u64, Spoil)> = vec![
+        ("POSITION", 12, |p| put(p, 12, &f32::NAN.to_le_bytes())),
+        ("POSITION", 24, |p| put(p, 32, &f32::INFINITY.to_le_bytes())),
+        ("POSITION", 48, |p| put(p, 48, &4.5f32.to_le_bytes())),
+        // Onto itself, onto a later one, onto one that is not there: no cycle can be written.
+        ("PARENT", 96, |p| put32(p, 96, &[3])),
+        ("PARENT", 96, |p| put32(p, 96, &[4])),
+        ("PARENT", 100, |p| put32(p, 100, &[u32::MAX])),
+        ("CORNER", 84, |p| put32(p, 92, &[5])),
+        ("CORNER", 60, |p| put32(p, 60, &[u32::MAX])),
+        ("FACE_VERTICES", 72, |p| put32(p, 72, &[1, 1, 3])),
+        ("FACE_ORDER", 84, |p| put32(p, 72, &[2, 3, 4, 1, 2, 3])),
+        ("FACE_LEVEL", 72, |p| put32(p, 72, &[0, 1, 3])),
+        ("SWITCH_LENGTH", 105, |p| p.push(0)),
+        ("SWITCH_LENGTH", 104, |p| {
+            p.pop();
+        }),
+        ("SWITCH_PADDING", 104, |p| p[104] |= 0x80),
+        ("SWITCH_PADDING", 104, |p| p[104] |= 0x04),
+    ];
+    let in_seam: Vec<(&str, u64, Spoil)> = vec![
+        ("ATTRIBUTE", 56, |p| put(p, 60, &f32::NAN.to_le_bytes())),
+        ("WEDGE_COUNT", 136, |p| p[136] = 0),
+        ("WEDGE_COUNT", 138, |p| p[136] = 4),
+        ("WEDGE_COUNT", 140, |p| p[139] = 1),
+        ("VARINT", 136, |p| put(p, 136, &[0x81, 0])),
+        ("VARINT", 136, |p| put(p, 136, &[0xFF, 0xFF, 0xFF, 0xFF, 0x1F])),
+        ("SWITCH_LENGTH", 140, |p| p.truncate(140)),
+        ("WEDGE_TARGET", 140, |p| p[140] = 2),
+        // Two bits, but there are only two wedges; a wedge that collapses onto the other side of the seam.
+        ("SWITCH", 142, |p| p[142] = 0b01_11),
+        ("SWITCH", 142, |p| p[142] = 0b01_01),
+        ("SWITCH", 142, |p| p[142] = 0b10_10),
+    ];
+    let mut seen = BTreeSet::new();
+    for (mesh, packet, cases) in [(strip(), 5, in_strip), (seam(), 4, in_seam)] {
+        for (number, (name, at, spoil)) in cases.into_iter().enumerate() {
+            let mut parts = parts(&mesh, packet);
+            let mut payload = parts.packets[0].2.clone();
+            spoil(&mut payload);
+            parts.set_payload(0, payload);
+            let error = check(&parts.build(), &Limits::default()).expect_err(name);
+            let place = error.offset().0 - parts.payload_offset(0);
+            assert_eq!((error.rule().name, place), (name, at), "case {number}: {error}");
+            seen.insert(error.code());
+        }
+    }
+    // Packets out of order are tested with Replay.
+    seen.insert(crate::codes::PACKET_ORDER.number());
+    let all = crate::codes::ALL.iter().map(|code| code.number()).filter(|number| (500..600).contains(number));
+    assert_eq!(seen, all.collect());
+}
+
+#[test]
+fn a_face_of_an_earlier_packet_is_refused_in_a_later_one() {
+    let mut parts = parts(&strip(), 4);
+    let mut payload = parts.packets[1].2.clone();
+    // Positions 12 bytes, then the face (2, 3, 4).
+    put32(&mut payload, 12, &[1, 2, 3]);
+    parts.set_payload(1, payload);
+    let error = check(&parts.build(), &Limits::default()).unwrap_err();
+    assert_eq!((error.rule().name, error.offset().0), ("FACE_ORDER", parts.payload_offset(1) + 12));
+}
+
+/// A packet can break a rule in its last byte, when all its vertices have been added already.
+#[test]
+fn a_refused_packet_leaves_the_levels_before_as_they_were() {
+    let mut parts = parts(&strip(), 4);
+    let mut payload = parts.packets[1].2.clone();
+    *payload.last_mut().unwrap() |= 0x80;
+    parts.set_payload(1, payload);
+    let mut replay = Replay::default();
+    let mut refused = 0;
+    decode_all(&parts.build(), &Limits::default(), |event| {
+        if replay.packets() == 1 && replay.level() == 4 {
+            replay.set_level(3).unwrap();
+        }
+        refused += usize::from(replay.accept(&event).is_err());
+    })
+    .unwrap();
+    assert_eq!((refused, replay.packets(), replay.level()), (1, 1, 3));
+    assert_eq!(replay.indices(), [[0, 1, 2]]);
+    replay.set_level(4).unwrap();
+    assert_eq!(replay.indices(), [[0, 1, 2], [1, 2, 3]]);
+    assert_eq!(replay.levels(), Some(3..=4));
+}
