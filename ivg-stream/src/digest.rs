@@ -1,6 +1,4 @@
-//! SHA-256 digests as text.
-
-use sha2::{Digest, Sha256};
+//! Digests as text.
 
 /// Lower-case hexadecimal digits of `bytes`.
 pub(crate) fn hex(bytes: &[u8]) -> String {
@@ -9,9 +7,4 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
         .flat_map(|byte| [byte >> 4, byte & 15])
         .map(|n| char::from(b"0123456789abcdef"[n as usize]))
         .collect()
-}
-
-/// The SHA-256 of `bytes` as 64 lower-case hexadecimal digits.
-pub(crate) fn sha256_hex(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
 }

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
 
 use crate::digest::hex;
 use crate::http::path::is_safe_uri;
@@ -27,6 +28,11 @@ pub struct FileEntry {
 }
 
 impl FileEntry {
+    /// The entry of a file with this content.
+    pub(crate) fn of(uri: String, bytes: &[u8]) -> Self {
+        Self { uri, byte_length: bytes.len() as u64, sha256: Sha256::digest(bytes).into() }
+    }
+
     /// The SHA-256 as 64 lower-case hexadecimal digits.
     #[must_use]
     pub fn sha256_hex(&self) -> String {
@@ -35,17 +41,19 @@ impl FileEntry {
 }
 
 /// A mesh's `IVG_progressive_mesh`.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MeshExtension {
     /// Index into glTF's `meshes`.
     pub(crate) gltf_mesh: usize,
     pub(crate) file: FileEntry,
+    /// Point of the progressive mesh's space at the origin of the glTF mesh's space \[m\].
+    pub(crate) origin: [f64; 3],
     /// glTF material of each material of the progressive mesh; `None` means the same numbers.
     pub(crate) materials: Option<Vec<u32>>,
 }
 
 /// All uses of our extensions in one glTF file.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Extensions {
     /// In the order of glTF's `meshes`.
     pub(crate) meshes: Vec<MeshExtension>,
@@ -76,13 +84,14 @@ pub enum ExtensionError {
 }
 
 /// The form of both extension objects; members that are not known are ignored (GLT-EXT-03).
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Form {
     uri: String,
     byte_length: u64,
     sha256: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
+    origin: [f64; 3],
     materials: Option<Vec<u32>>,
 }
 
@@ -114,13 +123,14 @@ impl Extensions {
         for (index, mesh) in document.meshes.iter().enumerate() {
             if let Some(value) = mesh.extensions.get(PROGRESSIVE_MESH) {
                 let place = || format!("meshes[{index}] {PROGRESSIVE_MESH}");
-                let (file, materials) = read(value, &place)?;
+                let (file, form) = read(value, &place)?;
+                let Form { origin, materials, .. } = form;
                 let known = document.materials.len();
                 if let Some(bad) = materials.iter().flatten().find(|&&m| m as usize >= known) {
                     let what = format!("material {bad} of {known} does not exist");
                     return Err(ExtensionError::Rule { place: place(), what, clause: "GLT-PM-04" });
                 }
-                meshes.push(MeshExtension { gltf_mesh: index, file, materials });
+                meshes.push(MeshExtension { gltf_mesh: index, file, origin, materials });
             }
         }
         let index = document.scene.unwrap_or(0);
@@ -146,22 +156,21 @@ impl Extensions {
     }
 }
 
-/// The JSON of an extension object.
-pub(crate) fn to_json(file: &FileEntry, materials: Option<&[u32]>) -> serde_json::Value {
-    let mut object = serde_json::Map::new();
-    object.insert("uri".into(), file.uri.as_str().into());
-    object.insert("byteLength".into(), file.byte_length.into());
-    object.insert("sha256".into(), file.sha256_hex().into());
-    if let Some(materials) = materials {
-        object.insert("materials".into(), materials.into());
-    }
-    object.into()
+/// The JSON of `IVG_irradiance_grid`.
+pub(crate) fn grid_to_json(file: &FileEntry) -> serde_json::Value {
+    serde_json::json!({ "uri": file.uri, "byteLength": file.byte_length, "sha256": file.sha256_hex() })
 }
 
-fn read(
-    value: &serde_json::Value,
-    place: &dyn Fn() -> String,
-) -> Result<(FileEntry, Option<Vec<u32>>), ExtensionError> {
+/// The JSON of `IVG_progressive_mesh` with its materials under their own numbers.
+pub(crate) fn mesh_to_json(file: &FileEntry, origin: [f64; 3]) -> serde_json::Value {
+    let mut object = grid_to_json(file);
+    if origin != [0.0; 3] {
+        object["origin"] = origin.as_slice().into();
+    }
+    object
+}
+
+fn read(value: &serde_json::Value, place: &dyn Fn() -> String) -> Result<(FileEntry, Form), ExtensionError> {
     let broken = |what: String, clause| ExtensionError::Rule { place: place(), what, clause };
     let form = Form::deserialize(value).map_err(|error| broken(error.to_string(), "GLT-EXT-03"))?;
     if !is_safe_uri(&form.uri) {
@@ -170,10 +179,14 @@ fn read(
     if form.byte_length == 0 || form.byte_length > LARGEST_LENGTH {
         return Err(broken(format!("byteLength {} is out of range", form.byte_length), "GLT-EXT-03"));
     }
+    if form.origin.iter().any(|x| !x.is_finite()) {
+        return Err(broken("origin is not finite".to_owned(), "GLT-PM-02"));
+    }
     let sha256 = parse_sha256(&form.sha256).ok_or_else(|| {
         broken(format!("sha256 {:?} is not 64 digits of 0-9a-f", form.sha256), "GLT-EXT-03")
     })?;
-    Ok((FileEntry { uri: form.uri, byte_length: form.byte_length, sha256 }, form.materials))
+    let file = FileEntry { uri: form.uri.clone(), byte_length: form.byte_length, sha256 };
+    Ok((file, form))
 }
 
 fn parse_sha256(text: &str) -> Option<[u8; 32]> {

@@ -20,10 +20,9 @@ use tokio::task::{JoinHandle, JoinSet};
 
 /// How a scene directory is served.
 #[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct ServerOptions {
     /// Where to listen; port 0 takes a free one.
-    pub addr: SocketAddr,
+    pub address: SocketAddr,
     /// Connections served at a time, >= 1; more wait in the listen queue of the operating system.
     pub max_connections: usize,
     /// Longest time from the first moment of waiting for a request to the end of its head, > 0. Idle connections
@@ -48,7 +47,7 @@ impl Default for ServerOptions {
     /// Loopback, a free port, 256 connections, 10 s for a head, 30 s for a piece, 16 KiB of head, CORS.
     fn default() -> Self {
         Self {
-            addr: SocketAddr::from(([127, 0, 0, 1], 0)),
+            address: SocketAddr::from(([127, 0, 0, 1], 0)),
             max_connections: 256,
             header_timeout: Duration::from_secs(10),
             request_timeout: Duration::from_secs(30),
@@ -72,13 +71,16 @@ pub enum ServeError {
         source: std::io::Error,
     },
     /// The address cannot be listened on.
-    #[error("cannot listen on {addr}: {source}; choose another address or port 0 for a free one")]
+    #[error("cannot listen on {address}: {source}; choose another address or port 0 for a free one")]
     Listen {
         /// The address as given.
-        addr: SocketAddr,
+        address: SocketAddr,
         /// What the operating system says.
         source: std::io::Error,
     },
+    /// No thread can be started.
+    #[error("cannot start a runtime: {0}")]
+    Runtime(std::io::Error),
     /// An option is outside its range.
     #[error("server option {option} must be at least {least}")]
     Option {
@@ -93,7 +95,7 @@ pub enum ServeError {
 #[derive(Debug)]
 pub struct ServerHandle {
     /// Where it listens; the port is the real one.
-    pub addr: SocketAddr,
+    pub address: SocketAddr,
     /// Ends when the server has stopped and all its connections are closed.
     pub join: JoinHandle<()>,
 }
@@ -124,11 +126,11 @@ pub async fn serve(
     check(&options)?;
     let files = files::Files::open(directory)
         .map_err(|source| ServeError::Directory { path: directory.to_owned(), source })?;
-    let in_listen = |source| ServeError::Listen { addr: options.addr, source };
-    let listener = TcpListener::bind(options.addr).await.map_err(in_listen)?;
-    let addr = listener.local_addr().map_err(in_listen)?;
+    let in_listen = |source| ServeError::Listen { address: options.address, source };
+    let listener = TcpListener::bind(options.address).await.map_err(in_listen)?;
+    let address = listener.local_addr().map_err(in_listen)?;
     let shared = Arc::new(Shared { files, options });
-    Ok(ServerHandle { addr, join: tokio::spawn(accept(listener, shared, shutdown)) })
+    Ok(ServerHandle { address, join: tokio::spawn(accept(listener, shared, shutdown)) })
 }
 
 fn check(options: &ServerOptions) -> Result<(), ServeError> {

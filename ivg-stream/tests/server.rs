@@ -40,7 +40,7 @@ impl Running {
     }
 
     fn addr(&self) -> SocketAddr {
-        self.handle.addr
+        self.handle.address
     }
 
     fn write(&self, name: &str, content: &[u8]) {
@@ -323,11 +323,9 @@ fn what_cannot_be_served_is_said() {
         matches!(&missing, ServeError::Directory { .. }) && missing.to_string().contains("none"),
         "{missing}"
     );
-    let taken = try_serve(directory.path(), ServerOptions::default()).unwrap().addr;
-    let mut options = ServerOptions::default();
-    options.addr = taken;
+    let taken = try_serve(directory.path(), ServerOptions::default()).unwrap().address;
+    let options = ServerOptions { address: taken, ..ServerOptions::default() };
     assert!(matches!(try_serve(directory.path(), options).unwrap_err(), ServeError::Listen { .. }));
-    let mut options = ServerOptions::default();
-    options.max_connections = 0;
+    let options = ServerOptions { max_connections: 0, ..ServerOptions::default() };
     assert!(matches!(try_serve(directory.path(), options).unwrap_err(), ServeError::Option { .. }));
 }

@@ -29,7 +29,7 @@ pub(super) enum Refusal {
 }
 
 /// What is known of a file's format, and where its data goes.
-pub(super) trait Contents {
+pub(super) trait Contents: Sized {
     /// Reads header and chunks from the first bytes of the file. Called anew with more bytes until
     /// [`Prefix::Whole`]; a call that fails or needs more leaves nothing behind.
     fn read_prefix(&mut self, bytes: &[u8]) -> Result<Prefix, Refusal>;
@@ -46,7 +46,11 @@ pub(super) trait Contents {
     /// Takes part `index`; parts come in order. A part that is refused changes nothing.
     fn accept(&mut self, index: u32, bytes: &[u8]) -> Result<(), Refusal>;
     /// Forgets everything.
-    fn reset(&mut self);
+    fn reset(&mut self) {
+        *self = self.fresh();
+    }
+    /// The same with nothing read.
+    fn fresh(&self) -> Self;
 }
 
 /// What has become of bytes that were received.
@@ -60,6 +64,8 @@ pub(super) enum Arrived {
         index: u32,
         /// Its length \[bytes\].
         bytes: u64,
+        /// Vertices of the file that are in with it.
+        vertices: u64,
     },
     /// The file is whole; whether its SHA-256 is the stated one.
     Complete {
@@ -144,8 +150,8 @@ impl<C: Contents> Download<C> {
 
     /// Whether `share` of the vertices is in; 0 is always reached, 1 needs the whole file.
     pub(super) fn has_reached(&self, share: f64) -> bool {
-        // Negated so that a share that is no number counts as reached.
-        !(share > 0.0)
+        share <= 0.0
+            || share.is_nan()
             || self.complete
             || (share < 1.0 && self.vertices >= self.needed(share).unwrap_or(u64::MAX))
     }
@@ -246,7 +252,7 @@ impl<C: Contents> Download<C> {
             self.vertices += self.contents.part_vertices(index);
             self.advance(part.end);
             self.next_part = Some(index + 1);
-            arrived(Arrived::Part { index, bytes: part.end - part.start });
+            arrived(Arrived::Part { index, bytes: part.end - part.start, vertices: self.vertices });
         }
         if !self.complete && self.verified == self.file.byte_length {
             self.complete = true;

@@ -115,8 +115,7 @@ impl Transport {
             .header(header::HOST, self.url.host_field())
             .header(header::ACCEPT_ENCODING, "identity");
         if let Some(range) = range {
-            request = request
-                .header(header::RANGE, format!("bytes={}-{}", range.start, range.end.saturating_sub(1)));
+            request = request.header(header::RANGE, range_field(range));
             if let Some(tag) = tag {
                 request = request.header(header::IF_RANGE, tag);
             }
@@ -156,6 +155,14 @@ impl Reply {
                 }
             }
         }
+    }
+}
+
+/// A range up to `u64::MAX` has no end.
+fn range_field(range: &Range<u64>) -> String {
+    match range.end {
+        u64::MAX => format!("bytes={}-", range.start),
+        end => format!("bytes={}-{}", range.start, end.saturating_sub(1)),
     }
 }
 

@@ -7,7 +7,7 @@ use hyper::Uri;
 
 /// A scene directory on an HTTP server: `http://HOST[:PORT]/PATH/`, or with `scene.glb` at its end.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SceneUrl {
+pub(crate) struct SceneUrl {
     /// Host as in the URL, with brackets where it is an IPv6 address.
     host: String,
     port: u16,
@@ -17,7 +17,7 @@ pub struct SceneUrl {
     query: String,
 }
 
-/// Why a text is no [`SceneUrl`].
+/// Why a text is no URL of a scene directory.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{url}: {reason}; expected http://HOST[:PORT]/PATH/ of a scene directory")]
 pub struct UrlError {

@@ -51,10 +51,11 @@ fn a_file_without_extensions_has_none() {
 fn what_is_written_is_read_back() {
     let file = FileEntry { uri: "x/y.pmesh".into(), byte_length: LARGEST_LENGTH, sha256: [0xAB; 32] };
     let mut document = valid();
-    document["meshes"][1]["extensions"][PROGRESSIVE_MESH] = to_json(&file, Some(&[1]));
-    document["scenes"][1]["extensions"][IRRADIANCE_GRID] = to_json(&file, None);
+    document["meshes"][1]["extensions"][PROGRESSIVE_MESH] = mesh_to_json(&file, [0.1, -2e9, 3.0]);
+    document["scenes"][1]["extensions"][IRRADIANCE_GRID] = grid_to_json(&file);
     let found = Extensions::of_glb(&glb(&document)).unwrap();
-    assert_eq!((&found.meshes[0].file, found.meshes[0].materials.as_deref()), (&file, Some(&[1][..])));
+    assert_eq!((&found.meshes[0].file, found.meshes[0].origin), (&file, [0.1, -2e9, 3.0]));
+    assert_eq!(mesh_to_json(&file, [0.0; 3]), grid_to_json(&file));
     assert_eq!(found.grid.as_ref(), Some(&file));
 }
 
@@ -75,6 +76,8 @@ fn each_broken_rule_is_named() {
         (grid, "sha256", json!(&SHA[1..]), "GLT-EXT-03"),
         (grid, "sha256", json!(null), "GLT-EXT-03"),
         (mesh, "materials", json!([2]), "GLT-PM-04"),
+        (mesh, "origin", json!([1.0, 2.0]), "GLT-EXT-03"),
+        (mesh, "origin", json!([1.0, 2.0, "3"]), "GLT-EXT-03"),
         (mesh, "materials", json!([-1]), "GLT-EXT-03"),
         (grid, "uri", json!("a.pmesh"), "GLT-EXT-05"),
     ] {

@@ -1,0 +1,131 @@
+//! A scene directory on disk, read whole.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use ivg_grid::IrradianceGrid;
+use ivg_scene::Scene;
+use pmesh_format::Replay;
+
+use crate::client::{Assembly, FileReader, SCENE_FILE, SceneLimits};
+use crate::manifest::{Manifest, ManifestError};
+
+/// A scene directory that has been read and verified whole: what a [`Session`](crate::Session) holds once
+/// everything has arrived.
+#[derive(Debug)]
+pub struct LocalScene {
+    assembly: Assembly,
+}
+
+/// Why a scene directory cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// A file cannot be read.
+    #[error("cannot read {path}: {source}")]
+    Read {
+        /// Which file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// `scene.glb` cannot be used.
+    #[error("{path}: {source}")]
+    Scene {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: ManifestError,
+    },
+    /// A file is not valid, not within the limits, or not the one that `scene.glb` states.
+    #[error("{path}: {reason}")]
+    Content {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl LocalScene {
+    /// Reads a scene directory, or the one that a `scene.glb` lies in.
+    ///
+    /// # Errors
+    /// [`LoadError`] naming the file.
+    pub fn open(path: &Path, limits: SceneLimits) -> Result<Self, LoadError> {
+        let directory = match path.file_name() {
+            Some(name) if name == SCENE_FILE => path.parent().unwrap_or(Path::new("")),
+            _ => path,
+        };
+        let glb_path = directory.join(SCENE_FILE);
+        let glb = read_limited(&glb_path, limits.scene_bytes)?;
+        let manifest =
+            Manifest::from_glb(&glb).map_err(|source| LoadError::Scene { path: glb_path, source })?;
+        let mut assembly = Assembly::new(manifest, limits);
+        for mut reader in assembly.readers() {
+            let path = directory.join(reader.uri());
+            stream(directory, &path, &mut reader)?;
+            reader.finish().map_err(|reason| LoadError::Content { path, reason })?;
+        }
+        Ok(Self { assembly })
+    }
+
+    /// What `scene.glb` says, with its coarse meshes.
+    #[must_use]
+    pub fn manifest(&self) -> &Manifest {
+        self.assembly.manifest()
+    }
+
+    /// Mesh `index` of [`Manifest::meshes`] at all its levels.
+    #[must_use]
+    pub fn replay(&self, index: usize) -> Option<&Replay> {
+        self.assembly.replay(index)
+    }
+
+    /// The grid, if the scene has one.
+    #[must_use]
+    pub fn grid(&self) -> Option<&IrradianceGrid> {
+        self.assembly.grid()
+    }
+
+    /// The scene with each mesh at the level of `share` of its vertices, in [0, 1].
+    #[must_use]
+    pub fn scene_at(&mut self, share: f64) -> Scene {
+        self.assembly.scene_at(share)
+    }
+}
+
+fn read_limited(path: &Path, most: u64) -> Result<Vec<u8>, LoadError> {
+    let failed = |source| LoadError::Read { path: path.to_owned(), source };
+    let mut bytes = Vec::new();
+    File::open(path).map_err(failed)?.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > most {
+        let reason = format!("larger than {most} bytes, the limit set");
+        return Err(LoadError::Content { path: path.to_owned(), reason });
+    }
+    Ok(bytes)
+}
+
+/// Reads a file piece by piece; a link out of the directory is not followed (GLT-URI-03).
+fn stream(directory: &Path, path: &Path, reader: &mut FileReader<'_>) -> Result<(), LoadError> {
+    const PIECE_BYTES: usize = 1 << 20;
+    let failed = |source| LoadError::Read { path: path.to_owned(), source };
+    let inside = path.canonicalize().map_err(failed)?.starts_with(directory.canonicalize().map_err(failed)?);
+    if !inside {
+        let reason = "is a link out of the scene directory".to_owned();
+        return Err(LoadError::Content { path: path.to_owned(), reason });
+    }
+    let mut file = File::open(path).map_err(failed)?;
+    let mut piece = vec![0; PIECE_BYTES];
+    loop {
+        match file.read(&mut piece) {
+            Ok(0) => return Ok(()),
+            Ok(length) => reader
+                .feed(&piece[..length])
+                .map_err(|reason| LoadError::Content { path: path.to_owned(), reason })?,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(failed(error)),
+        }
+    }
+}
