@@ -17,6 +17,8 @@ use rayon::prelude::*;
 use crate::layout::LightRecord;
 use crate::plan::FramePlan;
 use crate::{Image, RenderError, RenderOptions, RenderScene};
+#[cfg(test)]
+pub(crate) use direct::light_irradiance;
 use direct::{ShadowMaps, direct_irradiance};
 use shade::View;
 
@@ -69,7 +71,7 @@ fn light_groups(lights: &[LightRecord], shadow_size: u32) -> Vec<Range<usize>> {
     for (index, light) in lights.iter().enumerate() {
         layers += u64::from(light.layers);
         match groups.last_mut() {
-            Some(group) if layers <= layers_at_a_time => group.end = index + 1,
+            Some(group) if layers <= layers_at_a_time || light.layers == 0 => group.end = index + 1,
             _ => {
                 groups.push(index..index + 1);
                 layers = u64::from(light.layers);

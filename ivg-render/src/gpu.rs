@@ -11,6 +11,8 @@ mod resources;
 use crate::plan::FramePlan;
 use crate::{Image, RenderError, RenderOptions, RenderScene};
 use pipelines::Pipelines;
+#[cfg(test)]
+pub(crate) use pipelines::{SHADE_SHADER, SHADOW_SHADER};
 
 /// What to install when a machine has no GPU that wgpu can use: Mesa's software Vulkan.
 pub const INSTALL_SOFTWARE_ADAPTER: &str =

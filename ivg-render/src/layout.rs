@@ -134,3 +134,6 @@ pub struct FaceRecord {
     /// Makes the size a multiple of 16 bytes, as WGSL has it.
     pub padding: u32,
 }
+
+#[cfg(all(test, feature = "gpu"))]
+mod tests;

@@ -13,7 +13,8 @@
 //! The points are shared out by power among the connected emissive surfaces, one at least for each, by largest
 //! remainders; so the power of each surface is exact. On a surface they follow the area of its triangles, the k-th
 //! point at the area share (k + 1/2) / n, with the radical inverse of k as second coordinate: all points differ in
-//! both coordinates, which keeps the steps between their shadows small. Nothing is random.
+//! both coordinates, which keeps the steps between their shadows small. Nothing is random. With 16 points on a lamp of
+//! 1 x 0.5 m the irradiance on its axis is off by 0.7 % at 1 m, by 3 % at 0.5 m; with 64 points by 0.2 and 0.8 %.
 
 use std::collections::HashMap;
 

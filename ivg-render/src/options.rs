@@ -3,7 +3,9 @@ use ivg_scene::{Effect, EffectPlan};
 
 use crate::RenderError;
 use crate::error::MAX_SIDE;
-use crate::layout::SHADOW_BORDER;
+
+/// Smallest shadow map: a quarter of its half side is border for the filter.
+const MIN_SHADOW_SIZE: u32 = 32;
 
 /// What is rendered, and how finely.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,7 +78,7 @@ impl RenderOptions {
     }
 
     pub(crate) fn check(&self) -> Result<(), RenderError> {
-        let side = |length: u32| length.checked_mul(self.supersampling).unwrap_or(u32::MAX);
+        let side = |length: u32| length.saturating_mul(self.supersampling);
         let possible = |length: u32| (1..=MAX_SIDE).contains(&side(length));
         if !(1..=8).contains(&self.supersampling) || !possible(self.width) || !possible(self.height) {
             let Self { width, height, supersampling, .. } = *self;
@@ -87,6 +89,6 @@ impl RenderOptions {
             if fits { Ok(()) } else { Err(RenderError::Option { option, value, range }) }
         };
         in_range("number of area light samples", self.area_samples, 1, 1024, "1 to 1024")?;
-        in_range("size of the shadow maps", self.shadow_size, 4 * SHADOW_BORDER, 4096, "32 to 4096")
+        in_range("size of the shadow maps", self.shadow_size, MIN_SHADOW_SIZE, 4096, "32 to 4096")
     }
 }

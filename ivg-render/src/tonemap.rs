@@ -14,7 +14,7 @@ const KEY: f32 = 0.18;
 
 /// Share of the pixels that [`auto_exposure`] lets run into clipping at most: light sources seen directly, not lit
 /// walls.
-const CLIPPED_SHARE: f64 = 0.02;
+const CLIPPED_SHARE: f64 = 0.1;
 
 /// The sRGB transfer curve (IEC 61966-2-1): linear value in [0, 1] to display value in [0, 1].
 #[must_use]
@@ -37,7 +37,7 @@ pub fn tonemap(image: &Image, exposure: f32) -> DisplayImage {
 }
 
 /// An exposure that suits `image` \[(m² sr)/W\]: the mean logarithmic luminance of the pixels that are not black is
-/// shown as middle grey (Reinhard et al. 2002, equations 1 and 2), less if more than 2 % of those pixels would clip.
+/// shown as middle grey (Reinhard et al. 2002, equations 1 and 2), less if more than 10 % of those pixels would clip.
 /// 1 for a black picture.
 #[must_use]
 pub fn auto_exposure(image: &Image) -> f32 {

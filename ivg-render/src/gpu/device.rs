@@ -26,7 +26,7 @@ pub(super) fn checked<T>(
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let result = work();
-    let complaints = [validation.pop(), internal.pop(), memory.pop()].map(|scope| pollster::block_on(scope));
+    let complaints = [validation.pop(), internal.pop(), memory.pop()].map(pollster::block_on);
     match complaints.into_iter().flatten().next() {
         Some(complaint) => Err(GpuError::Device(complaint.to_string())),
         None => result,

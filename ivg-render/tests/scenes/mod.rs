@@ -6,11 +6,14 @@ use ivg_grid::{FillOptions, IrradianceGrid, fill, integrate};
 use ivg_render::{RenderMesh, RenderScene};
 use ivg_scene::{Camera, Light, LightKind, Material, Texture, TextureFormat};
 
-/// Half height of the ceiling light's rectangle along x and z \[m\], in a box of one metre.
+/// Half sides of the ceiling light's rectangle along x and z \[m\], in a box of one metre.
 pub(crate) const LIGHT_HALF_SIDES: [f32; 2] = [0.12, 0.10];
 
 /// Radiance of the ceiling light \[W/(m² sr)\].
 pub(crate) const LIGHT_RADIANCE: Vec3 = Vec3::new(18.4, 14.0, 6.8);
+
+/// Number of meshes of [`cornell`] that make the room and its light; those after them stand in it.
+pub(crate) const ROOM_MESHES: usize = 9;
 
 const WHITE: Vec3 = Vec3::new(0.76, 0.75, 0.72);
 const RED: Vec3 = Vec3::new(0.57, 0.05, 0.04);
