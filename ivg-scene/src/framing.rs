@@ -52,6 +52,10 @@ fn frame(flat: &FlatScene) -> Camera {
     };
     camera.eye += flat.origin;
     camera.target += flat.origin;
+    if camera.eye == camera.target {
+        // So small and so far that f64 cannot hold both.
+        camera.eye.z += camera.eye.abs().max_element();
+    }
     camera
 }
 
@@ -74,7 +78,7 @@ fn before(min: DVec3, max: DVec3, outwards: DVec3) -> Camera {
 /// Around an object, so far that its bounding sphere fits.
 fn around(min: DVec3, max: DVec3) -> Camera {
     let centre = 0.5 * (min + max);
-    let radius = (0.5 * (max - min)).length().max(f64::MIN_POSITIVE);
+    let radius = Some((0.5 * (max - min)).length()).filter(|r| *r > 0.0).unwrap_or(1.0);
     let direction = DVec3::new(0.35, 0.25, 1.0).normalize();
     camera(centre + radius * MARGIN / (0.5 * FOV_OUTSIDE).sin() * direction, centre, FOV_OUTSIDE)
 }
