@@ -112,7 +112,12 @@ impl Run<'_> {
         let step = (self.total / 100).max(1);
         self.refill();
         let mut made = 0;
+        let mut coincident = self.coincident();
         loop {
+            if coincident != self.coincident() {
+                coincident = true;
+                self.refill();
+            }
             let Some(Candidate { u, v, .. }) = self.queue.pop() else {
                 if made * RETRY_SHARE <= self.left {
                     self.rules = match self.rules {
@@ -162,7 +167,7 @@ impl Run<'_> {
     }
 
     fn coincident(&self) -> bool {
-        self.rules == Rules::Any || self.left * COINCIDENT_SHARE <= self.total
+        self.rules > Rules::Strict || self.left * COINCIDENT_SHARE <= self.total
     }
 
     /// Whether `u`, whose edges are in `ring`, may move onto `v`.
@@ -219,6 +224,13 @@ impl Run<'_> {
                 self.record(x, parent, 0.0);
                 report.isolated_vertices += 1;
             }
+        }
+        if let Some(x) = self.surface.lone_pair(v) {
+            // What is left of a component is flat and has no outside: it goes at once.
+            self.beside = beside;
+            self.ring.collect(&self.surface, v);
+            self.collapse(v, x, report);
+            return;
         }
         if !self.gone[v as usize] {
             self.look(v);

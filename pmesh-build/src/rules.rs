@@ -49,6 +49,8 @@ pub(crate) fn allowed(
     if rules < Rules::Any && !shapes_allowed(surface, u, v, rules) {
         return false;
     }
+    // A component that is as small as it can be may become two opposite triangles, which then vanish at once.
+    let coincident = coincident || (surface.face_count > 4 && surface.is_tetrahedron(u));
     rules == Rules::Any || topology_allowed(surface, u, v, rules, coincident, ring, other)
 }
 

@@ -50,6 +50,25 @@ impl Surface {
         neighbours.dedup();
     }
 
+    /// Whether `u` is a vertex of a component that is a tetrahedron.
+    pub(crate) fn is_tetrahedron(&self, u: u32) -> bool {
+        let around = self.around(u);
+        around.len() == 3
+            && around.iter().flat_map(|&f| self.faces[f as usize]).all(|x| {
+                let faces = self.around(x);
+                faces.len() == 3 && faces.iter().filter(|f| around.contains(f)).count() >= 2
+            })
+    }
+
+    /// If the component of `v` is two faces on the same three vertices, and not all that there is: one of the others.
+    pub(crate) fn lone_pair(&self, v: u32) -> Option<u32> {
+        let &[f, g] = self.around(v) else { return None };
+        let (f, g) = (self.faces[f as usize], self.faces[g as usize]);
+        let alone = f.iter().all(|x| g.contains(x) && self.around(*x).len() == 2);
+        let other = f.into_iter().filter(|&x| x != v).min();
+        other.filter(|_| alone && self.face_count > 2)
+    }
+
     /// Positions of the vertices of face `f`.
     pub(crate) fn triangle(&self, f: u32) -> [DVec3; 3] {
         self.faces[f as usize].map(|v| self.positions[v as usize])

@@ -9,7 +9,7 @@ quickcheck! {
     fn comes_out_in_order_of_cost_then_vertex(steps: Vec<(u8, u8, u8)>) -> bool {
         let mut queue = Queue::new(32);
         let mut map: BTreeMap<u32, (f64, u32)> = BTreeMap::new();
-        let mut pop = |queue: &mut Queue, map: &mut BTreeMap<u32, (f64, u32)>| {
+        let pop = |queue: &mut Queue, map: &mut BTreeMap<u32, (f64, u32)>| {
             let expected = map
                 .iter()
                 .min_by(|a, b| a.1.0.total_cmp(&b.1.0).then(a.0.cmp(b.0)))

@@ -91,10 +91,10 @@ fn what_cannot_be_written_is_named() {
     check(EncodeError::NotFinite { array: "origin", index: 0 }, |mesh| mesh.origin[1] = f64::NAN);
     check(EncodeError::NotFinite { array: "positions", index: 5 }, |mesh| mesh.positions[5][1] = f32::NAN);
     check(EncodeError::NotFinite { array: "normals", index: 2 }, |mesh| {
-        mesh.wedges.normals[2][0] = f32::INFINITY
+        mesh.wedges.normals[2][0] = f32::INFINITY;
     });
     check(EncodeError::NotFinite { array: "uvs", index: 3 }, |mesh| {
-        mesh.wedges.uvs[3][1] = f32::NEG_INFINITY
+        mesh.wedges.uvs[3][1] = f32::NEG_INFINITY;
     });
     check(EncodeError::Wedge { wedge: good.wedges.len() - 1 }, |mesh| {
         *mesh.wedges.vertices.last_mut().unwrap() = 12;

@@ -20,7 +20,7 @@ fn each_fault_of_a_level_is_found() {
         mesh.wedges.normals = vec![[0.0; 3]];
     });
     check(LevelFault::ArrayLength { array: "materials", found: 1, expected: 2 }, |mesh| {
-        mesh.materials = vec![0]
+        mesh.materials = vec![0];
     });
     check(LevelFault::WedgeVertex { wedge: 3 }, |mesh| {
         mesh.positions.pop();
