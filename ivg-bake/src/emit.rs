@@ -75,6 +75,8 @@ pub(crate) struct Arrival {
     pub(crate) distance: f32,
     /// Irradiance on a surface facing the direction, divided by the probability of the choice \[W/m²\].
     pub(crate) irradiance: Vec3,
+    /// Cosine at which the light leaves its surface, in (0, 1]; 1 where it has none.
+    pub(crate) cosine: f32,
 }
 
 /// How much short of a light's surface a shadow ray ends, as a share of its length.
@@ -207,14 +209,15 @@ impl Emitters {
             (distance > 0.0).then(|| (way / distance, distance))
         };
         let metres = |distance: f32| f64::from(distance) * self.metre;
+        let mut cosine = 1.0;
         let (direction, distance, strength, factor) = match light.kind {
             Kind::Triangle { corners, normal, two_sided, radiance, area } => {
                 let u = [words[2], words[3]].map(unit);
                 let place = SurfacePoint::new(&corners, normal, triangle_weights(u));
                 let (direction, distance) = towards(place.position)?;
                 let cos = -place.normal.dot(direction);
-                let cos = if two_sided { cos.abs() } else { cos.max(0.0) };
-                (direction, distance * SHADOW_END, radiance, f64::from(cos) * area / metres(distance).powi(2))
+                cosine = if two_sided { cos.abs() } else { cos.max(0.0) };
+                (direction, distance * SHADOW_END, radiance, f64::from(cosine) * area / metres(distance).powi(2))
             }
             Kind::Point { position, intensity } => {
                 let (direction, distance) = towards(position)?;
@@ -229,7 +232,7 @@ impl Emitters {
             Kind::Sky => return None,
         };
         let irradiance = (strength.as_dvec3() * (factor * weight)).as_vec3();
-        (irradiance.max_element() > 0.0).then_some(Arrival { direction, distance, irradiance })
+        (irradiance.max_element() > 0.0).then_some(Arrival { direction, distance, irradiance, cosine })
     }
 }
 

@@ -29,17 +29,19 @@ pub(crate) struct SurfacePoint {
     pub(crate) position: Vec3,
     /// Geometric normal, unit length, out of the front.
     pub(crate) normal: Vec3,
-    /// Bound of the error of each coordinate.
-    error: Vec3,
+    /// Bound of the error of each coordinate, and of the distance of a hit from a ray that starts nearby.
+    error: f32,
 }
 
 /// Roundings in interpolating a position from three corners (Pharr, Jakob, Humphreys, "Physically based rendering",
-/// 4th edition, section 6.8.4: gamma(7)).
+/// 4th edition, section 6.8.4: gamma(7)), relative to the largest coordinate of the corners. A bound for each axis by itself
+/// would be zero for a wall in a coordinate plane, but the sheared triangle test mixes the axes, so that its error is
+/// as large as that of the worst one.
 const POSITION_ROUNDINGS: f32 = 7.0;
 
-/// How much farther than the error bound a new ray starts, so that the rounding of the next triangle test, of the same
-/// size as the position's, is covered as well.
-const ORIGIN_MARGIN: f32 = 4.0;
+/// How much farther than the error bound a new ray starts, so that the rounding of the next triangle test is covered as well:
+/// its coordinates are differences, up to twice as large, and are multiplied and added twice more.
+const ORIGIN_MARGIN: f32 = 8.0;
 
 impl<'a> Surfaces<'a> {
     /// Takes the scene's triangles into bake space. `textured`: whether albedo textures are looked up.
@@ -117,9 +119,10 @@ impl SurfacePoint {
     /// The point of a triangle with unit `normal` that has barycentric `weights`.
     #[inline]
     pub(crate) fn new([a, b, c]: &[Vec3; 3], normal: Vec3, weights: [f32; 3]) -> Self {
-        let [a, b, c] = [a * weights[0], b * weights[1], c * weights[2]];
+        let reach = a.abs().max(b.abs()).max(c.abs()).max_element();
         let gamma = POSITION_ROUNDINGS * (f32::EPSILON / 2.0);
-        Self { position: a + b + c, normal, error: (a.abs() + b.abs() + c.abs()) * gamma }
+        let position = a * weights[0] + b * weights[1] + c * weights[2];
+        Self { position, normal, error: reach * gamma }
     }
 
     /// The normal on the side of `towards`.
@@ -129,10 +132,10 @@ impl SurfacePoint {
     }
 
     /// Where a ray that leaves on the side of the unit vector `side` (the normal or its opposite) starts: far enough
-    /// out that rounding cannot put it behind the surface (Pharr et al., section 6.8.6).
+    /// out that rounding cannot put it behind the surface.
     #[inline]
     pub(crate) fn origin(&self, side: Vec3) -> Vec3 {
-        self.position + side * (ORIGIN_MARGIN * side.abs().dot(self.error))
+        self.position + side * (ORIGIN_MARGIN * self.error)
     }
 }
 

@@ -41,6 +41,10 @@ const REACH_FOUND: u32 = 2;
 /// Reflections of such a path.
 const REACH_BOUNCES: u32 = 8;
 
+/// Cosine below which light that leaves or meets a surface does not count as found. A point in the plane of a ceiling with
+/// a light set into it, outside the room, sees the light in theory: from the side, along the ceiling, over the wall.
+const GRAZING: f32 = 0.01;
+
 /// Seed of the paths: the surroundings do not depend on the photons' seed.
 const REACH_SEED: u64 = 0;
 
@@ -216,7 +220,8 @@ impl Stage<'_> {
     /// Whether a place on a light, chosen at random, shines on a point (of a surface with normal `side`).
     fn lit_directly(&self, point: Vec3, side: Option<Vec3>, stream: &Stream, step: u32) -> bool {
         self.emitters.arrive(point, stream, step).is_some_and(|light| {
-            side.is_none_or(|side| side.dot(light.direction) > 0.0)
+            side.is_none_or(|side| side.dot(light.direction) > GRAZING)
+                && light.cosine > GRAZING
                 && !self.accel.occluded(point, light.direction, light.distance)
         })
     }
