@@ -1,2 +1,55 @@
-//! The one binary: `ivg`.
-fn main() {}
+//! `ivg`: bakes indirect light, orders meshes, packs, serves, fetches and renders streamed lit scenes.
+//!
+//! This crate parses arguments, shows progress and prints tables; every algorithm lies in a library crate.
+
+#![forbid(unsafe_code)]
+
+mod args;
+mod baking;
+mod commands;
+mod convert;
+mod failure;
+mod files;
+mod kind;
+mod npy;
+mod packing;
+mod picture;
+mod progress;
+mod reading;
+mod scene_args;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::args::{Arguments, Command};
+use crate::failure::Failure;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(arguments.command) {
+        Ok(code) => code,
+        Err(failure) => {
+            eprintln!("ivg: {failure}");
+            failure.exit_code()
+        }
+    }
+}
+
+fn run(command: Command) -> Result<ExitCode, Failure> {
+    match command {
+        Command::Demo(arguments) => commands::demo::run(&arguments),
+        Command::Plan(arguments) => commands::plan::run(&arguments),
+        Command::Bake(arguments) => commands::bake::run(&arguments),
+        Command::Mesh(arguments) => commands::mesh::run(&arguments),
+        Command::Pack(arguments) => commands::pack::run(&arguments),
+        Command::Info(arguments) => commands::info::run(&arguments),
+        Command::Check(arguments) => commands::check::run(&arguments),
+        Command::Sample(arguments) => commands::sample::run(&arguments),
+        Command::Extract(arguments) => commands::extract::run(&arguments),
+        Command::Render(arguments) => commands::render::run(&arguments),
+        Command::Serve(arguments) => commands::serve::run(&arguments),
+        Command::Fetch(arguments) => commands::fetch::run(&arguments),
+    }
+}

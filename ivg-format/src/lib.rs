@@ -74,4 +74,4 @@ pub use limits::Limits;
 pub use metadata::{BakedLight, LIGHTS, METADATA, lights, metadata};
 pub use order::BundleVertices;
 pub use validity::ValidityBlock;
-pub use wire::HEADER_BYTES;
+pub use wire::{HEADER_BYTES, MAJOR};

@@ -5,10 +5,13 @@ use ivg_wire::{COMMON_HEADER_BYTES, FormatId};
 use zerocopy::little_endian::{F64, I16, U16, U32, U64};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
+/// The major version that this crate reads and writes; 0 is a draft (COM-VER-01).
+pub const MAJOR: u16 = 0;
+
 /// The format, and the version that this crate reads and writes.
 pub(crate) const FORMAT: FormatId = FormatId {
     magic: *b"\x89IVG\r\n\x1A\n",
-    major: 0,
+    major: MAJOR,
     minor: 1,
     header_bytes: HEADER_BYTES as u32,
     features: 0,

@@ -1,0 +1,365 @@
+//! The command line: names, defaults, units. Nothing here computes.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::scene_args::{Bounds, GridSize, PictureSize, ScheduleArgument};
+
+/// Streams lit 3D scenes: bakes indirect light into an irradiance vector grid, orders meshes coarse-to-fine, serves both,
+/// and renders what has arrived.
+#[derive(Debug, Parser)]
+#[command(name = "ivg", version, propagate_version = true, max_term_width = 110)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// The whole way in one command: bake, order, serve on loopback, stream, four pictures and a table.
+    Demo(DemoArguments),
+    /// Which light effects a scene calls for, which are left out, why, and what each costs.
+    Plan(PlanArguments),
+    /// Bake the indirect light of a scene into an irradiance vector grid (.ivg).
+    Bake(BakeArguments),
+    /// Order a mesh coarse-to-fine and write it as a progressive mesh (.pmesh).
+    Mesh(MeshArguments),
+    /// Write a scene directory that any HTTP server can stream: scene.glb, light.ivg, one .pmesh a mesh.
+    Pack(PackArguments),
+    /// Header and parts of an .ivg or .pmesh file.
+    Info(FileArguments),
+    /// Validate an .ivg or .pmesh file; the exit status is the verdict: 0 ok, 40 need-more, 41 invalid, 42 unsupported, 43 limit.
+    Check(FileArguments),
+    /// Irradiance at points with normals, from an .ivg file, as CSV.
+    Sample(SampleArguments),
+    /// What a client knows: a grid as .npy, a mesh at a level as .ply or .obj.
+    Extract(ExtractArguments),
+    /// Render a picture of a scene, a scene directory, or a URL.
+    Render(RenderArguments),
+    /// Serve a scene directory over HTTP/1.1 with ranges.
+    Serve(ServeArguments),
+    /// Stream a scene without showing it, and log what arrived when.
+    Fetch(FetchArguments),
+}
+
+/// A scene and what may be added to it.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// Scene file: .obj, .gltf, .glb or .ply, also .gz or .zst.
+    pub(crate) scene: PathBuf,
+    /// Adds lights, a camera and the unit of length to the scene (TOML; see ivg-scene/LIGHTS.md).
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) lights: Option<PathBuf>,
+}
+
+/// How a grid is baked.
+#[derive(Debug, Args)]
+pub(crate) struct BakeSettings {
+    /// Number of grid vertices along x, y and z.
+    #[arg(long, value_name = "NXxNYxNZ", default_value = "16x16x16")]
+    pub(crate) grid: GridSize,
+    /// First and last vertex of the grid [m]; default: the scene's bounds and a margin.
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
+    pub(crate) bounds: Option<Bounds>,
+    /// Number of photons traced.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) photons: u64,
+    /// How photon flights become irradiance vectors.
+    #[arg(long, value_enum, default_value_t = EstimatorArgument::TrackLength)]
+    pub(crate) estimator: EstimatorArgument,
+    /// How the file stores a vertex.
+    #[arg(long, value_enum, default_value_t = EncodingArgument::PackedOct24)]
+    pub(crate) encoding: EncodingArgument,
+    /// Seed of the random numbers: the same seed gives the same bytes.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Number of threads [default: one a core]; the result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Vertices of each slice that one bundle brings.
+    #[arg(long, value_name = "S", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) per_slice: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EstimatorArgument {
+    /// Flight length in the dual cell of a vertex: unbiased, least noise.
+    TrackLength,
+    /// Crossings of dual faces, divided by the cosine: unbiased, noisy at grazing angles.
+    FaceCrossing,
+    /// Crossings as RR-6983 prints them: biased by -1/3 in uniform light, for comparison.
+    #[value(name = "face-crossing-rr6983")]
+    FaceCrossingRr6983,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EncodingArgument {
+    /// 24-bit octahedral direction and shared-exponent colour a hemisphere: 42 bytes a vertex.
+    #[value(name = "packed-oct24")]
+    PackedOct24,
+    /// All 54 numbers as f32: 216 bytes a vertex.
+    #[value(name = "vectors-f32")]
+    VectorsF32,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DemoArguments {
+    /// Scene to show instead of the embedded one.
+    #[arg(long)]
+    pub(crate) scene: Option<PathBuf>,
+    /// Adds lights, a camera and the unit of length to the scene (TOML; see ivg-scene/LIGHTS.md).
+    #[arg(long, value_name = "FILE.toml", requires = "scene")]
+    pub(crate) lights: Option<PathBuf>,
+    /// Folder for the pictures, demo.json and the scene directory; made if missing.
+    #[arg(long, value_name = "DIR", default_value = "demo-out")]
+    pub(crate) out: PathBuf,
+    /// Which renderer draws the pictures.
+    #[arg(long, value_enum, default_value_t = RendererArgument::Auto)]
+    pub(crate) renderer: RendererArgument,
+    /// Size of each picture [pixels].
+    #[arg(long, value_name = "WxH", default_value = "480x480")]
+    pub(crate) size: PictureSize,
+    /// Number of photons traced.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) photons: u64,
+    /// Number of grid vertices along x, y and z.
+    #[arg(long, value_name = "NXxNYxNZ", default_value = "16x16x16")]
+    pub(crate) grid: GridSize,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Number of photons of the bake whose cost is estimated; the pilot traces 1 % of them.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) photons: u64,
+    /// Share of the light energy that may be left out by cutting bounces, in (0, 1).
+    #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::scene_args::share)]
+    pub(crate) energy_cutoff: f64,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BakeArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Output file.
+    #[arg(short, long, value_name = "FILE.ivg")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) bake: BakeSettings,
+    /// Print figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MeshArguments {
+    /// Mesh file: .obj, .gltf, .glb or .ply, also .gz or .zst. All its meshes are joined into one.
+    pub(crate) mesh: PathBuf,
+    /// Output file.
+    #[arg(short, long, value_name = "FILE.pmesh")]
+    pub(crate) out: PathBuf,
+    /// How positions are stored.
+    #[arg(long, value_enum, default_value_t = PositionsArgument::F32)]
+    pub(crate) positions: PositionsArgument,
+    /// How packets are stored.
+    #[arg(long, value_enum, default_value_t = ModeArgument::Raw)]
+    pub(crate) mode: ModeArgument,
+    /// The cost that orders the collapses.
+    #[arg(long, value_enum, default_value_t = CostArgument::Quadric)]
+    pub(crate) cost: CostArgument,
+    /// Vertices a packet [default: packets that grow with the mesh].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) packet: Option<u32>,
+    /// Print figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PositionsArgument {
+    /// 32-bit floats about an f64 origin.
+    F32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ModeArgument {
+    /// Arrays as a GPU takes them.
+    Raw,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CostArgument {
+    /// Area-weighted quadric error.
+    Quadric,
+    /// Edge length times curvature, as Melax 1998.
+    Melax,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PackArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Scene directory to write.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) bake: BakeSettings,
+    /// Vertices of each mesh in scene.glb, for viewers that know nothing of the streams.
+    #[arg(long, value_name = "N", default_value_t = 500)]
+    pub(crate) coarse_vertices: u32,
+    /// Print figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FileArguments {
+    /// An .ivg or .pmesh file.
+    pub(crate) file: PathBuf,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SampleArguments {
+    /// An .ivg file.
+    pub(crate) file: PathBuf,
+    /// CSV file with the header x,y,z,nx,ny,nz: positions [m] and unit normals; - reads stdin.
+    #[arg(long, value_name = "POINTS.csv")]
+    pub(crate) at: PathBuf,
+    /// How irradiance for a normal is made from the vectors.
+    #[arg(long, value_enum, default_value_t = ReconstructionArgument::Auto)]
+    pub(crate) reconstruction: ReconstructionArgument,
+    /// How vectors between grid vertices are made.
+    #[arg(long, value_enum, default_value_t = FilterArgument::Trilinear)]
+    pub(crate) filter: FilterArgument,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReconstructionArgument {
+    /// The papers' blend by squared normal components.
+    N2,
+    /// Three vectors, corrected: exact on the axes and in uniform light.
+    Three,
+    /// All six vectors.
+    Six,
+    /// `three` for packed encodings, `six` for vectors-f32.
+    Auto,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FilterArgument {
+    /// Linear along each axis.
+    Trilinear,
+    /// Cubic B-spline: smoother, and smooths.
+    Tricubic,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExtractArguments {
+    /// An .ivg or .pmesh file.
+    pub(crate) file: PathBuf,
+    /// Output: .npy for a grid, .ply or .obj for a mesh.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Use the first N bytes of the file only: what a client knows then.
+    #[arg(long, value_name = "N")]
+    pub(crate) bytes: Option<u64>,
+    /// Number of vertices of the mesh [default: as many as there are].
+    #[arg(long, value_name = "N")]
+    pub(crate) level: Option<u32>,
+    /// Fill missing and invalid vertices of a grid by push-pull instead of leaving them NaN.
+    #[arg(long)]
+    pub(crate) fill: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RendererArgument {
+    /// The GPU when there is one, else the CPU.
+    Auto,
+    /// Always the CPU.
+    Cpu,
+    /// The GPU, or an error.
+    #[cfg(feature = "gpu")]
+    Gpu,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum IndirectArgument {
+    /// From the irradiance vector grid.
+    Grid,
+    /// Path traced: slow, the reference. Scene files only.
+    Path,
+    /// No indirect light.
+    None,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RenderArguments {
+    /// A scene file, a scene directory (written by `ivg pack`), or the http:// address of one.
+    pub(crate) source: String,
+    /// Adds lights, a camera and the unit of length to a scene file.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) lights: Option<PathBuf>,
+    /// Output picture.
+    #[arg(short, long, value_name = "FILE.png")]
+    pub(crate) out: PathBuf,
+    /// Which renderer draws.
+    #[arg(long, value_enum, default_value_t = RendererArgument::Auto)]
+    pub(crate) renderer: RendererArgument,
+    /// Where indirect light comes from. A scene file is baked first unless --ivg names a grid.
+    #[arg(long, value_enum, default_value_t = IndirectArgument::Grid)]
+    pub(crate) indirect: IndirectArgument,
+    /// Grid to use with a scene file.
+    #[arg(long, value_name = "FILE.ivg")]
+    pub(crate) ivg: Option<PathBuf>,
+    /// Camera: eye and target [m] as X,Y,Z,X,Y,Z [default: the scene's, or one that frames it].
+    #[arg(long, value_name = "EYE,TARGET", allow_hyphen_values = true)]
+    pub(crate) camera: Option<Bounds>,
+    /// Size of the picture [pixels].
+    #[arg(long, value_name = "WxH", default_value = "640x480")]
+    pub(crate) size: PictureSize,
+    /// Brightness: factor on radiance before the tone curve [default: from the scene].
+    #[arg(long, value_name = "FACTOR", value_parser = crate::scene_args::positive)]
+    pub(crate) exposure: Option<f32>,
+    /// Samples a pixel of the path-traced reference.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) samples: u32,
+    #[command(flatten)]
+    pub(crate) bake: BakeSettings,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ServeArguments {
+    /// Scene directory.
+    pub(crate) directory: PathBuf,
+    /// Address and port to listen on; port 0 picks a free one.
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
+    pub(crate) listen: SocketAddr,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FetchArguments {
+    /// Address of a scene directory, e.g. <http://127.0.0.1:8080/>.
+    pub(crate) url: String,
+    /// In which order geometry and light are asked for: alternate, geometry, light, or the share of light in (0, 1).
+    #[arg(long, value_name = "SCHEDULE", default_value = "alternate")]
+    pub(crate) schedule: ScheduleArgument,
+    /// Stop when this share of the vertices of every mesh has arrived.
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = crate::scene_args::share_or_all)]
+    pub(crate) geometry: f64,
+    /// Stop when this share of the grid's vertices has arrived.
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = crate::scene_args::share_or_all)]
+    pub(crate) light: f64,
+    /// Print the log as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,144 @@
+//! Scene in, baked grid and its file out: shared by every command that bakes.
+
+use std::time::{Duration, Instant};
+
+use ivg_bake::{BakeOptions, BakeStats, Estimator, PilotReport};
+use ivg_format::{EncodeOptions, Encoding, GridSource};
+use ivg_grid::IrradianceGrid;
+use ivg_scene::import::{self, ImportOptions};
+use ivg_scene::plan::{self, PlanOptions};
+use ivg_scene::{EffectPlan, FlatScene, Need, Scene};
+
+use crate::args::{BakeSettings, EncodingArgument, EstimatorArgument, SceneArguments};
+use crate::failure::Failure;
+use crate::progress::BakeBar;
+
+/// A scene with everything a bake or a picture needs to know about it.
+#[derive(Debug)]
+pub(crate) struct LoadedScene {
+    pub(crate) scene: Scene,
+    pub(crate) flat: FlatScene,
+}
+
+impl LoadedScene {
+    /// Reads a scene and what a lights file adds, and prints warnings to stderr.
+    pub(crate) fn open(arguments: &SceneArguments) -> Result<Self, Failure> {
+        Self::load(&arguments.scene, arguments.lights.as_deref())
+    }
+
+    pub(crate) fn load(path: &std::path::Path, lights: Option<&std::path::Path>) -> Result<Self, Failure> {
+        let options = ImportOptions { lights: lights.map(Into::into), ..ImportOptions::default() };
+        let scene = import::load(path, &options).map_err(Failure::new)?;
+        for warning in &scene.warnings {
+            eprintln!("ivg: warning: {warning}");
+        }
+        Self::from_scene(scene)
+    }
+
+    pub(crate) fn from_scene(scene: Scene) -> Result<Self, Failure> {
+        scene.check().map_err(Failure::new)?;
+        let flat = scene.flatten();
+        Ok(Self { scene, flat })
+    }
+}
+
+/// A bake's result, as numbers and as a file.
+#[derive(Debug)]
+pub(crate) struct Baked {
+    pub(crate) plan: EffectPlan,
+    pub(crate) grid: IrradianceGrid,
+    pub(crate) stats: BakeStats,
+    pub(crate) file: Vec<u8>,
+    /// Wall time of pilot and bake.
+    pub(crate) elapsed: Duration,
+}
+
+/// Plans a scene and measures the plan by a pilot run of 1 % of the photons.
+pub(crate) fn plan(
+    loaded: &LoadedScene,
+    energy_cutoff: f64,
+    options: &BakeOptions,
+) -> Result<(EffectPlan, Option<PilotReport>), Failure> {
+    let LoadedScene { scene, flat } = loaded;
+    let mut plan = plan::analyse(scene, flat, &PlanOptions { energy_cutoff, ..PlanOptions::default() });
+    if scene.require_light().is_err() {
+        return Ok((plan, None));
+    }
+    let report = ivg_bake::pilot(scene, flat, &mut plan, options).map_err(Failure::new)?;
+    Ok((plan, Some(report)))
+}
+
+/// Prints to stderr what the scene asks for and this release does not simulate.
+pub(crate) fn report_unsupported(scene: &Scene, plan: &EffectPlan) {
+    for effect in plan.effects.iter().filter(|effect| effect.need == Need::Unsupported) {
+        eprintln!("ivg: not simulated: {}: {}", effect.effect.name(), effect.reason);
+    }
+    for unsupported in &scene.unsupported {
+        eprintln!("ivg: not supported: {}: {}", unsupported.object, unsupported.what);
+    }
+}
+
+/// Plans, bakes and encodes; shows progress.
+pub(crate) fn bake(loaded: &LoadedScene, settings: &BakeSettings) -> Result<Baked, Failure> {
+    loaded.scene.require_light().map_err(Failure::new)?;
+    let options = bake_options(settings);
+    let start = Instant::now();
+    let (plan, _) = plan(loaded, PlanOptions::default().energy_cutoff, &options)?;
+    report_unsupported(&loaded.scene, &plan);
+    let bar = BakeBar::new("bake", settings.photons, "photons");
+    let result = ivg_bake::bake(&loaded.scene, &loaded.flat, &plan, &options, &bar);
+    bar.finish();
+    let result = result.map_err(Failure::new)?;
+    let elapsed = start.elapsed();
+    let file = encode(&result.grid, &result.stats, settings, &plan)?;
+    Ok(Baked { plan, grid: result.grid, stats: result.stats, file, elapsed })
+}
+
+/// The options of the baker that the arguments name.
+pub(crate) fn bake_options(settings: &BakeSettings) -> BakeOptions {
+    BakeOptions {
+        dims: settings.grid.0,
+        bounds: settings.bounds.map(|bounds| (bounds.0, bounds.1)),
+        photons: settings.photons,
+        estimator: match settings.estimator {
+            EstimatorArgument::TrackLength => Estimator::TrackLength,
+            EstimatorArgument::FaceCrossing => Estimator::FaceCrossing,
+            EstimatorArgument::FaceCrossingRr6983 => Estimator::FaceCrossingRr6983,
+        },
+        seed: settings.seed,
+        threads: settings.threads.map(usize::from),
+    }
+}
+
+/// The grid as a file. Its metadata hold what repeats the bake; nothing in it depends on time or threads.
+fn encode(
+    grid: &IrradianceGrid,
+    stats: &BakeStats,
+    settings: &BakeSettings,
+    plan: &EffectPlan,
+) -> Result<Vec<u8>, Failure> {
+    let estimator = bake_options(settings).estimator.name();
+    let numbers = [settings.photons, settings.seed, u64::from(plan.max_bounces)].map(|n| n.to_string());
+    let metadata = [
+        ("generator", concat!("ivg ", env!("CARGO_PKG_VERSION"))),
+        ("estimator", estimator),
+        ("photons", &numbers[0]),
+        ("seed", &numbers[1]),
+        ("bounces", &numbers[2]),
+    ];
+    let lights: Vec<ivg_format::BakedLight<'_>> = stats
+        .lights
+        .iter()
+        .map(|light| ivg_format::BakedLight { name: &light.name, direct_included: light.direct })
+        .collect();
+    let source = GridSource { lights: &lights, meta: &metadata, ..grid.as_source() };
+    let options = EncodeOptions {
+        encoding: match settings.encoding {
+            EncodingArgument::PackedOct24 => Encoding::PackedOct24,
+            EncodingArgument::VectorsF32 => Encoding::VectorsF32,
+        },
+        vertices_per_slice: settings.per_slice,
+        ..EncodeOptions::default()
+    };
+    ivg_format::encode(&source, &options).map_err(Failure::new)
+}

@@ -1,0 +1,124 @@
+use std::path::Path;
+use std::process::ExitCode;
+
+use ivg_grid::{FillOptions, IrradianceGrid};
+use ivg_scene::export;
+
+use crate::args::ExtractArguments;
+use crate::convert;
+use crate::failure::Failure;
+use crate::kind::FileKind;
+use crate::{files, npy, reading};
+
+pub(crate) fn run(arguments: &ExtractArguments) -> Result<ExitCode, Failure> {
+    let mut bytes = files::read(&arguments.file)?;
+    let kind = FileKind::of(&arguments.file, &bytes)?;
+    if let Some(limit) = arguments.bytes {
+        bytes.truncate(usize::try_from(limit).unwrap_or(usize::MAX));
+    }
+    match kind {
+        FileKind::Grid => grid(arguments, &bytes),
+        FileKind::Mesh => mesh(arguments, &bytes),
+    }
+}
+
+fn grid(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure> {
+    if arguments.level.is_some() {
+        return Err(Failure::usage("--level is for .pmesh files; a grid is cut with --bytes"));
+    }
+    require_extension(&arguments.out, &["npy"])?;
+    let (header, mut grid, used) = reading::grid(&arguments.file, bytes)?;
+    let known = grid.received_count();
+    if arguments.fill {
+        grid = ivg_grid::fill(&grid, &FillOptions::default());
+    }
+    let [nx, ny, nz] = header.lattice.dims.map(usize::from);
+    let values = Values { grid: &grid, keep_all: arguments.fill, next: 0 };
+    files::write(&arguments.out, &npy::encode(&[nz, ny, nx, 6, 3, 3], values))?;
+    let verb = if arguments.fill { "known, the rest filled" } else { "known, the rest NaN" };
+    files::print(&format!(
+        "{}: {nz} x {ny} x {nx} x 6 x 3 x 3 f32, {known} of {} vertices {verb}; {used} bytes used\n",
+        arguments.out.display(),
+        grid.vertex_count(),
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Numbers of one vertex: six hemispheres, three channels, three components.
+const PER_VERTEX: usize = 54;
+
+/// All numbers of a grid in file order: NaN for vertices that have not arrived or that light does not reach.
+struct Values<'a> {
+    grid: &'a IrradianceGrid,
+    keep_all: bool,
+    next: usize,
+}
+
+impl Iterator for Values<'_> {
+    type Item = f32;
+
+    fn next(&mut self) -> Option<f32> {
+        let (vertex, number) = (self.next / PER_VERTEX, self.next % PER_VERTEX);
+        let vectors = self.grid.vectors().get(vertex)?;
+        self.next += 1;
+        let known = self.keep_all || (self.grid.is_received(vertex) && self.grid.is_valid(vertex));
+        Some(if known { vectors[number / 9][number / 3 % 3][number % 3] } else { f32::NAN })
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = self.grid.vertex_count() * PER_VERTEX - self.next;
+        (left, Some(left))
+    }
+}
+
+impl ExactSizeIterator for Values<'_> {}
+
+fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure> {
+    if arguments.fill {
+        return Err(Failure::usage("--fill is for .ivg files"));
+    }
+    let extension = require_extension(&arguments.out, &["ply", "obj"])?;
+    let (mut replay, used) = reading::mesh(&arguments.file, bytes)?;
+    let range = replay.levels().ok_or_else(|| {
+        Failure::file(&arguments.file, "the first packet has not arrived whole; there is no level yet")
+    })?;
+    let level = arguments.level.unwrap_or(*range.end());
+    if !range.contains(&level) {
+        let what = format!("level {level} is not there: {} to {} are", range.start(), range.end());
+        return Err(Failure::file(&arguments.file, what));
+    }
+    replay.set_level(level).map_err(|error| Failure::file(&arguments.file, error))?;
+    let mesh = replay.mesh();
+    let name =
+        arguments.file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let (out, attributes_left_out) = convert::scene_mesh(&mesh, &name);
+    let mut bytes = Vec::new();
+    let written = match extension {
+        "ply" => export::write_ply(&out, &mut bytes),
+        _ => export::write_obj(&out, &mut bytes),
+    };
+    written.map_err(|error| Failure::file(&arguments.out, error))?;
+    files::write(&arguments.out, &bytes)?;
+    if attributes_left_out {
+        eprintln!("ivg: warning: the mesh has seams; its normals and texture coordinates are left out");
+    }
+    files::print(&format!(
+        "{}: level {level} of {}: {} vertices, {} faces; {used} bytes used\n",
+        arguments.out.display(),
+        range.end(),
+        mesh.positions.len(),
+        mesh.triangles.len(),
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn require_extension<'a>(path: &'a Path, wanted: &[&str]) -> Result<&'a str, Failure> {
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some(extension) if wanted.contains(&extension) => Ok(extension),
+        _ => Err(Failure::usage(format_args!(
+            "{}: the output of this file must end in .{}",
+            path.display(),
+            wanted.join(" or .")
+        ))),
+    }
+}

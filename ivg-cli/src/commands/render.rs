@@ -1,0 +1,141 @@
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use glam::{DVec3, Vec3};
+use ivg_bake::reference::{Oracle, Sampling, Shown};
+use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction};
+use ivg_render::{Image, RenderOptions, RenderScene};
+use ivg_scene::plan::{self, PlanOptions};
+use ivg_scene::{Camera, EffectPlan};
+use ivg_stream::blocking::Session;
+use ivg_stream::{FetchOptions, Goal, LocalScene, SceneLimits};
+
+use crate::args::{IndirectArgument, RenderArguments};
+use crate::baking::{self, LoadedScene};
+use crate::failure::Failure;
+use crate::picture::{self, Renderer};
+use crate::progress::BakeBar;
+use crate::{files, reading};
+
+/// Vertical field of view of a camera given on the command line \[rad\].
+const COMMAND_LINE_FOV: f32 = 0.8;
+
+/// A scene and its indirect light, wherever they came from.
+struct Source {
+    loaded: LoadedScene,
+    plan: EffectPlan,
+    grid: Option<(IrradianceGrid, Reconstruction)>,
+}
+
+pub(crate) fn run(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
+    let source = open(arguments)?;
+    let scene = &source.loaded.scene;
+    let camera = camera(arguments, &source.loaded);
+    let start = Instant::now();
+    let (image, who) = if arguments.indirect == IndirectArgument::Path {
+        (path_traced(arguments, &source.loaded, &camera)?, "path tracer".to_owned())
+    } else {
+        let renderer = Renderer::choose(arguments.renderer)?;
+        let mut render_scene = RenderScene::from_scene(scene, &source.loaded.flat, camera);
+        let mut options = RenderOptions::for_plan(&source.plan, arguments.size.width, arguments.size.height);
+        match source.grid {
+            Some((grid, reconstruction)) => {
+                options.reconstruction = reconstruction;
+                render_scene.grid = Some(ivg_grid::fill(&grid, &FillOptions::default()));
+            }
+            None => options.indirect = false,
+        }
+        (renderer.render(&render_scene, &options)?, renderer.name())
+    };
+    let exposure = arguments.exposure.unwrap_or_else(|| ivg_render::auto_exposure(&image));
+    picture::write_png(&arguments.out, &image, exposure)?;
+    files::print(&format!(
+        "{}: {} x {}, exposure {exposure:.4}, {:.2} s on {who}\n",
+        arguments.out.display(),
+        image.width(),
+        image.height(),
+        start.elapsed().as_secs_f64(),
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn open(arguments: &RenderArguments) -> Result<Source, Failure> {
+    let wants_grid = arguments.indirect == IndirectArgument::Grid;
+    let path = Path::new(&arguments.source);
+    if arguments.source.starts_with("http://") {
+        let mut session =
+            Session::open(&arguments.source, FetchOptions::default(), &mut |_| {}).map_err(Failure::new)?;
+        session.fetch_until(Goal::ALL, &mut |_| {}).map_err(Failure::new)?;
+        let scene = session.scene_at(1.0);
+        return packed(arguments, scene, session.grid());
+    }
+    if path.is_dir() || path.join("scene.glb").is_file() {
+        let mut local = LocalScene::open(path, SceneLimits::default()).map_err(Failure::new)?;
+        let scene = local.scene_at(1.0);
+        return packed(arguments, scene, local.grid());
+    }
+    let loaded = LoadedScene::load(path, arguments.lights.as_deref())?;
+    if !wants_grid {
+        let plan = plan::analyse(&loaded.scene, &loaded.flat, &PlanOptions::default());
+        baking::report_unsupported(&loaded.scene, &plan);
+        return Ok(Source { loaded, plan, grid: None });
+    }
+    if let Some(file) = &arguments.ivg {
+        let (header, grid, _) = reading::grid(file, &files::read(file)?)?;
+        let plan = plan::analyse(&loaded.scene, &loaded.flat, &PlanOptions::default());
+        baking::report_unsupported(&loaded.scene, &plan);
+        return Ok(Source {
+            loaded,
+            plan,
+            grid: Some((grid, Reconstruction::for_encoding(header.encoding))),
+        });
+    }
+    let baked = baking::bake(&loaded, &arguments.bake)?;
+    // Straight from the baker, nothing is packed: all six vectors are as they were.
+    Ok(Source { loaded, plan: baked.plan, grid: Some((baked.grid, Reconstruction::SixVector)) })
+}
+
+/// A packed scene: complete, with the grid that was packed with it.
+fn packed(
+    arguments: &RenderArguments,
+    scene: ivg_scene::Scene,
+    grid: Option<&IrradianceGrid>,
+) -> Result<Source, Failure> {
+    if arguments.lights.is_some() || arguments.ivg.is_some() {
+        return Err(Failure::usage("--lights and --ivg are for scene files; a packed scene has its own"));
+    }
+    let loaded = LoadedScene::from_scene(scene)?;
+    let plan = plan::analyse(&loaded.scene, &loaded.flat, &PlanOptions::default());
+    baking::report_unsupported(&loaded.scene, &plan);
+    let grid = grid.filter(|_| arguments.indirect == IndirectArgument::Grid);
+    Ok(Source { loaded, plan, grid: grid.map(|grid| (grid.clone(), Reconstruction::ThreeVector)) })
+}
+
+fn camera(arguments: &RenderArguments, loaded: &LoadedScene) -> Camera {
+    match arguments.camera {
+        Some(eye_and_target) => Camera {
+            eye: eye_and_target.0,
+            target: eye_and_target.1,
+            up: DVec3::Y,
+            vertical_fov: COMMAND_LINE_FOV,
+        },
+        None => loaded.scene.camera_or_framed(),
+    }
+}
+
+fn path_traced(arguments: &RenderArguments, loaded: &LoadedScene, camera: &Camera) -> Result<Image, Failure> {
+    let oracle = Oracle::new(&loaded.scene, &loaded.flat).map_err(Failure::new)?;
+    let sampling = Sampling {
+        paths: arguments.samples,
+        seed: arguments.bake.seed,
+        threads: arguments.bake.threads.map(usize::from),
+    };
+    let size = arguments.size;
+    let bar = BakeBar::new("trace paths", u64::from(size.width) * u64::from(size.height), "pixels");
+    let picture = oracle.render(camera, (size.width, size.height), Shown::All, sampling, &bar);
+    bar.finish();
+    let picture = picture.map_err(Failure::new)?;
+    let pixels = picture.pixels.into_iter().map(Vec3::from_array).collect();
+    Ok(Image::new(size.width, size.height, pixels))
+}

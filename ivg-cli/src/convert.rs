@@ -1,0 +1,102 @@
+//! Between the meshes of a scene and those that have a collapse order.
+
+use glam::{DVec3, Vec2, Vec3};
+use ivg_scene::{Material, Mesh, Scene};
+use pmesh_format::{IndexedMesh, Wedges};
+
+use crate::failure::Failure;
+
+/// One scene mesh in its own space; every vertex of the source is a wedge.
+///
+/// # Errors
+///
+/// Fails if a material index does not fit the format's 16 bits.
+pub(crate) fn indexed_mesh(mesh: &Mesh, materials: &[Material]) -> Result<IndexedMesh, Failure> {
+    let mut out = IndexedMesh::from_positions(
+        mesh.positions.iter().map(|p| p.to_array()).collect(),
+        mesh.triangles.clone(),
+    );
+    out.origin = mesh.origin.to_array();
+    out.wedges.normals = mesh.normals.iter().map(|n| n.to_array()).collect();
+    out.wedges.uvs = mesh.uvs.iter().map(|uv| uv.to_array()).collect();
+    set_materials(&mut out, &mesh.triangle_materials, materials, &mesh.name)?;
+    Ok(out)
+}
+
+/// All meshes of a scene, placed by its nodes, as one mesh in world space.
+///
+/// Normals and texture coordinates are kept only if every mesh has them: a mesh has one set of attributes.
+///
+/// # Errors
+///
+/// Fails if the scene has no triangle, or a material index does not fit the format's 16 bits.
+pub(crate) fn joined_mesh(scene: &Scene) -> Result<IndexedMesh, Failure> {
+    let placed = || scene.nodes.iter().map(|node| &scene.meshes[node.mesh as usize]);
+    if placed().all(|mesh| mesh.triangles.is_empty()) {
+        return Err(Failure::new(format_args!("{}: the file has no triangle", scene.name)));
+    }
+    let with_normals = placed().all(|mesh| !mesh.normals.is_empty());
+    let with_uvs = placed().all(|mesh| !mesh.uvs.is_empty());
+    let flat = scene.flatten();
+    let mut out = IndexedMesh::from_positions(
+        flat.positions.iter().map(|p| p.to_array()).collect(),
+        flat.triangles.clone(),
+    );
+    out.origin = DVec3::to_array(&flat.origin);
+    if with_normals {
+        out.wedges.normals = flat.normals.iter().map(|n| n.to_array()).collect();
+    }
+    if with_uvs {
+        out.wedges.uvs = flat.uvs.iter().map(|uv| uv.to_array()).collect();
+    }
+    set_materials(&mut out, &flat.triangle_materials, &scene.materials, &scene.name)?;
+    Ok(out)
+}
+
+fn set_materials(
+    out: &mut IndexedMesh,
+    triangle_materials: &[u32],
+    materials: &[Material],
+    object: &str,
+) -> Result<(), Failure> {
+    out.materials = triangle_materials
+        .iter()
+        .map(|&index| u16::try_from(index))
+        .collect::<Result<_, _>>()
+        .map_err(|_| Failure::new(format_args!("{object}: more than 65536 materials; join some")))?;
+    out.material_names = materials.iter().map(|material| material.name.clone()).collect();
+    Ok(())
+}
+
+/// How many bytes the mesh takes as plain arrays: positions, attributes, corner indices.
+pub(crate) fn plain_bytes(mesh: &IndexedMesh) -> u64 {
+    let Wedges { vertices, normals, uvs, colours } = &mesh.wedges;
+    let attributes = normals.len() * 12 + uvs.len() * 8 + colours.len() * 4;
+    // A mesh with attributes is drawn by wedge, so it stores a position for each.
+    let positions = if attributes > 0 { vertices.len() } else { mesh.positions.len() };
+    (positions * 12 + attributes + mesh.triangles.len() * 12) as u64
+}
+
+/// A mesh at a level as a scene mesh with exactly one vertex for each of its vertices.
+///
+/// Normals and texture coordinates are kept if every vertex has one wedge; a vertex on a seam has several values of each,
+/// of which a plain mesh file could keep only one. The second value tells whether something was left out for that.
+pub(crate) fn scene_mesh(mesh: &IndexedMesh, name: &str) -> (Mesh, bool) {
+    let seams = mesh.wedges.len() != mesh.positions.len();
+    let attributes = !(mesh.wedges.normals.is_empty() && mesh.wedges.uvs.is_empty());
+    let mut out = Mesh {
+        name: name.to_owned(),
+        origin: DVec3::from_array(mesh.origin),
+        positions: mesh.positions.iter().map(|&p| Vec3::from_array(p)).collect(),
+        triangles: (0..mesh.triangles.len()).map(|triangle| mesh.triangle_vertices(triangle)).collect(),
+        triangle_materials: (0..mesh.triangles.len())
+            .map(|triangle| mesh.material(triangle).into())
+            .collect(),
+        ..Mesh::default()
+    };
+    if !seams {
+        out.normals = mesh.wedges.normals.iter().map(|&n| Vec3::from_array(n)).collect();
+        out.uvs = mesh.wedges.uvs.iter().map(|&uv| Vec2::from_array(uv)).collect();
+    }
+    (out, seams && attributes)
+}

@@ -1,0 +1,116 @@
+//! Parsers of composite arguments. Each error says what a right value looks like.
+
+use std::str::FromStr;
+
+use glam::DVec3;
+
+/// Number of grid vertices along x, y and z, each in 1..=65535.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct GridSize(pub(crate) [u16; 3]);
+
+impl FromStr for GridSize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wanted =
+            || format!("'{text}' is not a grid size; give vertices along x, y and z such as 16x16x16");
+        let numbers: Vec<u16> =
+            text.split('x').map(str::parse).collect::<Result<_, _>>().map_err(|_| wanted())?;
+        match numbers[..] {
+            [x, y, z] if x > 0 && y > 0 && z > 0 => Ok(Self([x, y, z])),
+            _ => Err(wanted()),
+        }
+    }
+}
+
+/// Two points \[m\] given as six numbers: lower and upper corner of a box, or eye and target of a camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Bounds(pub(crate) DVec3, pub(crate) DVec3);
+
+impl FromStr for Bounds {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text
+            .split(',')
+            .map(|part| part.trim().parse::<f64>().ok().filter(|value| value.is_finite()))
+            .collect::<Option<_>>()
+            .ok_or_else(|| {
+                format!("'{text}' has a part that is not a finite number; give X,Y,Z,X,Y,Z in metres")
+            })?;
+        match numbers[..] {
+            [a, b, c, d, e, f] => Ok(Self(DVec3::new(a, b, c), DVec3::new(d, e, f))),
+            _ => Err(format!("'{text}' has {} numbers; give six: X,Y,Z,X,Y,Z in metres", numbers.len())),
+        }
+    }
+}
+
+/// Largest side of a picture \[pixels\].
+const MAX_SIDE: u32 = 16_384;
+
+/// Width and height of a picture \[pixels\].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct PictureSize {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+}
+
+impl FromStr for PictureSize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |part: &str| part.parse::<u32>().ok().filter(|side| (1..=MAX_SIDE).contains(side));
+        match text.split_once('x').map(|(w, h)| (side(w), side(h))) {
+            Some((Some(width), Some(height))) => Ok(Self { width, height }),
+            _ => Err(format!(
+                "'{text}' is not a picture size; give pixels such as 640x480, each side up to {MAX_SIDE}"
+            )),
+        }
+    }
+}
+
+/// In which order geometry and light are asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ScheduleArgument(pub(crate) ivg_stream::Schedule);
+
+impl FromStr for ScheduleArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "alternate" => Ok(Self(ivg_stream::Schedule::Alternate)),
+            "geometry" => Ok(Self(ivg_stream::Schedule::GeometryFirst)),
+            "light" => Ok(Self(ivg_stream::Schedule::LightFirst)),
+            _ => share(text).map(|light| Self(ivg_stream::Schedule::Proportion { light: light as f32 })).map_err(|_| {
+                format!("'{text}' is not a schedule; give alternate, geometry, light, or the share of light such as 0.3")
+            }),
+        }
+    }
+}
+
+/// A share in (0, 1).
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err(format!("'{text}' is not a number between 0 and 1")),
+    }
+}
+
+/// A share in [0, 1].
+pub(crate) fn share_or_all(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
+        _ => Err(format!("'{text}' is not a number from 0 to 1")),
+    }
+}
+
+/// A finite number above zero.
+pub(crate) fn positive(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err(format!("'{text}' is not a number above zero")),
+    }
+}
+
+#[cfg(test)]
+mod tests;
