@@ -1,8 +1,9 @@
 //! The scene as it is rendered: plain data, no wgpu.
 
-use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3};
+use glam::{Affine3A, DAffine3, DVec3, Mat3A, Vec2, Vec3};
 use ivg_grid::IrradianceGrid;
 use ivg_scene::{Camera, FlatScene, Light, LightKind, Material, Scene, Texture};
+use pmesh_format::IndexedMesh;
 
 use crate::RenderError;
 
@@ -116,6 +117,48 @@ impl RenderScene {
 }
 
 impl RenderMesh {
+    /// A mesh at any level of detail, placed in scene space. Its vertices are the wedges of `mesh`.
+    ///
+    /// `materials` holds the scene's material for each material index of the mesh; an index without one becomes a
+    /// material that [`RenderScene::check`] refuses. `transform` leads from mesh space to world space, `origin` is the
+    /// world position of the origin of scene space \[m\]; positions are combined with both in f64. Without normals of
+    /// its own the mesh gets area-weighted ones, smooth across seams of texture coordinates.
+    ///
+    /// # Panics
+    ///
+    /// If a triangle names a wedge, or a wedge a vertex, that does not exist.
+    #[must_use]
+    pub fn from_indexed(mesh: &IndexedMesh, materials: &[u32], transform: &DAffine3, origin: DVec3) -> Self {
+        let place = DAffine3 {
+            matrix3: transform.matrix3,
+            translation: transform.transform_point3(DVec3::from(mesh.origin)) - origin,
+        };
+        let wedges = &mesh.wedges;
+        let material = |index: u16| materials.get(usize::from(index)).copied().unwrap_or(u32::MAX);
+        let normals = if wedges.normals.is_empty() {
+            let vertex_of = |wedge: u32| wedges.vertices[wedge as usize];
+            let triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(|t| t.map(vertex_of)).collect();
+            let positions: Vec<Vec3> = mesh.positions.iter().copied().map(Vec3::from).collect();
+            let normals = area_weighted_normals(&positions, &triangles);
+            wedges.vertices.iter().map(|vertex| normals[*vertex as usize]).collect()
+        } else {
+            wedges.normals.iter().copied().map(Vec3::from).collect()
+        };
+        Self {
+            positions: wedges.vertices.iter().map(|vertex| mesh.positions[*vertex as usize].into()).collect(),
+            normals,
+            uvs: wedges.uvs.iter().copied().map(Vec2::from).collect(),
+            triangle_materials: (0..mesh.triangles.len())
+                .map(|triangle| material(mesh.materials.get(triangle).copied().unwrap_or(0)))
+                .collect(),
+            triangles: mesh.triangles.clone(),
+            transform: Affine3A {
+                matrix3: place.matrix3.as_mat3().into(),
+                translation: place.translation.as_vec3a(),
+            },
+        }
+    }
+
     fn check(&self, mesh: usize, materials: usize) -> Result<(), RenderError> {
         let vertices = self.positions.len();
         for (attribute, found, expected, optional) in [
@@ -149,15 +192,7 @@ impl RenderMesh {
         if !self.normals.is_empty() || self.positions.is_empty() {
             return self.normals.clone();
         }
-        let mut sums = vec![Vec3::ZERO; self.positions.len()];
-        for corners in &self.triangles {
-            let [a, b, c] = corners.map(|corner| self.positions[corner as usize]);
-            let twice_area = (b - a).cross(c - a);
-            for corner in corners {
-                sums[*corner as usize] += twice_area;
-            }
-        }
-        sums.into_iter().map(Vec3::normalize_or_zero).collect()
+        area_weighted_normals(&self.positions, &self.triangles)
     }
 
     /// What maps normals of the mesh's space to scene space (not unit length).
@@ -167,6 +202,19 @@ impl RenderMesh {
             [self.transform.matrix3.x_axis, self.transform.matrix3.y_axis, self.transform.matrix3.z_axis];
         Mat3A::from_cols(y.cross(z), z.cross(x), x.cross(y))
     }
+}
+
+/// Unit normals of vertices: the mean of the triangles around each, weighted by area; zero where there is none.
+fn area_weighted_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; positions.len()];
+    for corners in triangles {
+        let [a, b, c] = corners.map(|corner| positions[corner as usize]);
+        let twice_area = (b - a).cross(c - a);
+        for corner in corners {
+            sums[*corner as usize] += twice_area;
+        }
+    }
+    sums.into_iter().map(Vec3::normalize_or_zero).collect()
 }
 
 fn is_finite(kind: &LightKind) -> bool {

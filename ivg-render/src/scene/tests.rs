@@ -1,4 +1,5 @@
 use glam::Mat3;
+use pmesh_format::Wedges;
 
 use super::*;
 use crate::Geometry;
@@ -123,4 +124,29 @@ fn a_grid_with_missing_vertices_is_refused() {
         scene.grid = Some(IrradianceGrid::new(lattice).unwrap());
     });
     assert_eq!(error, RenderError::GridNotFilled { missing: 8 });
+}
+
+#[test]
+fn a_mesh_of_wedges_is_placed_in_f64_and_stays_smooth_across_seams() {
+    // Two triangles that share an edge along a seam of texture coordinates, far from the origin.
+    let mesh = IndexedMesh {
+        origin: [1e7, 0.0, 0.0],
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        wedges: Wedges {
+            vertices: vec![0, 1, 2, 0, 1, 3],
+            uvs: vec![[0.0, 0.0], [0.5, 0.0], [0.0, 1.0], [1.0, 1.0], [0.25, 0.0], [0.0, 0.75]],
+            ..Wedges::default()
+        },
+        triangles: vec![[0, 1, 2], [4, 3, 5]],
+        materials: vec![1, 2],
+        material_names: Vec::new(),
+    };
+    let transform = DAffine3::from_translation(DVec3::new(0.25, 0.0, 0.0));
+    let render = RenderMesh::from_indexed(&mesh, &[7, 5], &transform, DVec3::new(1e7, -1.0, 0.0));
+    assert_eq!(render.transform.transform_point3(render.positions[1]), Vec3::new(1.25, 1.0, 0.0));
+    assert_eq!(render.uvs[3], Vec2::ONE);
+    assert_eq!(render.triangle_materials, [5, u32::MAX]);
+    // Both wedges of vertex 0 have the mean of +z and +y.
+    let mean = Vec3::new(0.0, 1.0, 1.0).normalize();
+    assert!((render.normals[0] - mean).length() < 1e-6 && render.normals[0] == render.normals[3]);
 }
