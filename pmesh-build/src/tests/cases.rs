@@ -246,7 +246,7 @@ fn bad_input_is_refused_by_name() {
     };
     refused(BuildError::NonFinitePosition { vertex: 3, axis: 1 }, |mesh| mesh.positions[3][1] = f32::NAN);
     refused(BuildError::NonFinitePosition { vertex: 0, axis: 2 }, |mesh| {
-        mesh.positions[0][2] = f32::INFINITY
+        mesh.positions[0][2] = f32::INFINITY;
     });
     refused(BuildError::NonFiniteOrigin, |mesh| mesh.origin[0] = f64::NAN);
     refused(BuildError::NonFiniteAttribute { wedge: 2, attribute: "normal" }, |mesh| {
@@ -258,10 +258,10 @@ fn bad_input_is_refused_by_name() {
         mesh.wedges.uvs[7][1] = f32::INFINITY;
     });
     refused(BuildError::CornerOutOfRange { triangle: 5, index: 8, wedges: 8 }, |mesh| {
-        mesh.triangles[5][1] = 8
+        mesh.triangles[5][1] = 8;
     });
     refused(BuildError::VertexOutOfRange { wedge: 7, index: 8, vertices: 8 }, |mesh| {
-        mesh.wedges.vertices[7] = 8
+        mesh.wedges.vertices[7] = 8;
     });
     refused(BuildError::ArrayLength { array: "colours", found: 1, expected: 8 }, |mesh| {
         mesh.wedges.colours = vec![[0; 4]];

@@ -101,7 +101,8 @@ fn a_change_names_only_the_faces_that_switch() {
     assert_eq!(change, LevelChange { from: 100, to: 50, changed: vec![] }, "faces only go");
     assert_eq!(replay.indices().len(), 48);
     let change = replay.set_level(52).unwrap();
-    assert_eq!(change, LevelChange { from: 50, to: 52, changed: vec![48..50] }, "two faces come");
+    assert_eq!((change.from, change.to), (50, 52));
+    assert!(change.changed.iter().eq([&(48..50)]), "two faces come: {:?}", change.changed);
     // Nothing changes when the level stays.
     assert_eq!(replay.set_level(52).unwrap().changed, vec![]);
 }
