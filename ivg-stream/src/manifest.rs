@@ -107,3 +107,6 @@ pub(crate) fn scene_mesh(mesh: &IndexedMesh, name: String, material: impl Fn(u16
         triangle_materials: (0..mesh.triangles.len()).map(|i| material(mesh.material(i))).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -282,6 +282,10 @@ fn a_byte_that_stays_damaged_is_an_error() {
 fn a_server_without_ranges_will_do() {
     let (_, asked) = arrives(|_, _| Fault::IgnoreRange);
     assert_eq!(asked.len(), 4, "each file comes whole in one answer");
+    // What is in already is passed over.
+    let (_, asked) = arrives(|ask, _| if ask.number < 8 { Fault::None } else { Fault::IgnoreRange });
+    let last = |file: &str| asked.iter().rfind(|ask| ask.file == file).and_then(|ask| ask.range.clone());
+    assert!(["strip.pmesh", "light.ivg"].iter().all(|file| last(file).is_some_and(|range| range.start > 0)));
 }
 
 #[test]

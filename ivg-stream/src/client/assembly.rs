@@ -126,3 +126,6 @@ fn kept<C: Contents>(
     }
     download
 }
+
+#[cfg(test)]
+mod tests;

@@ -11,7 +11,7 @@ pub struct FetchOptions {
     pub schedule: Schedule,
     /// About how many bytes one request asks for, >= 1: more means fewer round trips, less a finer schedule.
     pub request_bytes: u64,
-    /// How many bytes the first request of each file asks for, >= 1; header and directory fit in 16 KiB as a rule.
+    /// How many bytes the first request of each file asks for, >= 1; header and directory fit in 4 KiB as a rule.
     pub prefix_bytes: u64,
     /// Longest time until a connection stands.
     pub connect_timeout: Duration,
@@ -49,6 +49,12 @@ impl Default for SceneLimits {
 }
 
 impl FetchOptions {
+    /// The defaults with another schedule.
+    #[must_use]
+    pub fn with_schedule(schedule: Schedule) -> Self {
+        Self { schedule, ..Self::default() }
+    }
+
     /// Longest waiting time between attempts.
     pub const MOST_BACKOFF: Duration = Duration::from_secs(5);
 
@@ -59,12 +65,12 @@ impl FetchOptions {
 }
 
 impl Default for FetchOptions {
-    /// Alternating requests of 64 KiB, 16 KiB first; 10 s to connect, 20 s of silence, 5 repetitions from 100 ms on.
+    /// Alternating requests of 64 KiB, 4 KiB first; 10 s to connect, 20 s of silence, 5 repetitions from 100 ms on.
     fn default() -> Self {
         Self {
             schedule: Schedule::Alternate,
             request_bytes: 64 << 10,
-            prefix_bytes: 16 << 10,
+            prefix_bytes: 4 << 10,
             connect_timeout: Duration::from_secs(10),
             stall_timeout: Duration::from_secs(20),
             retries: 5,
