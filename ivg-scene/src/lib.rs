@@ -26,6 +26,8 @@ mod scene;
 
 pub use camera::Camera;
 pub use error::SceneError;
+#[cfg(feature = "fuzz")]
+pub use import::fuzz_scene_import;
 pub use light::{Light, LightKind, spot_factor};
 pub use material::{Material, Texture, TextureFormat};
 pub use mesh::Mesh;

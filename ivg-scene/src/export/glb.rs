@@ -35,7 +35,8 @@ const NEAR_PLANE: f64 = 0.01;
 ///
 /// What glTF cannot say: where a material lets light through, its base colour is the colour of the transmission, and
 /// the diffuse albedo that is read back is that times the share not let through. Meshes without triangles are left out,
-/// their nodes stay.
+/// their nodes stay. A scene without nodes, lights and camera
+/// becomes a file without a glTF scene.
 ///
 /// # Errors
 ///
@@ -57,18 +58,18 @@ pub fn write_glb(scene: &Scene, options: &GlbOptions) -> Result<Vec<u8>, SceneEr
 
     let mut root = json!({
         "asset": { "version": "2.0", "generator": concat!("ivg ", env!("CARGO_PKG_VERSION")) },
-        "scene": 0,
-        "scenes": [{ "name": scene.name }],
     });
-    let top = &mut root["scenes"][0];
+    // A list of nodes may not be empty (glTF 2.0, section 5.25), and the gltf crate wants one in each scene.
     if !nodes.is_empty() {
-        top["nodes"] = (0..nodes.len()).collect();
-    }
-    if !options.scene_extensions.is_empty() {
-        top["extensions"] = Value::Object(options.scene_extensions.clone());
-    }
-    if let Some(sky) = scene.sky {
-        top["extras"] = json!({ SKY_KEY: sky.to_array() });
+        let mut top = json!({ "name": scene.name, "nodes": (0..nodes.len()).collect::<Vec<_>>() });
+        if !options.scene_extensions.is_empty() {
+            top["extensions"] = Value::Object(options.scene_extensions.clone());
+        }
+        if let Some(sky) = scene.sky {
+            top["extras"] = json!({ SKY_KEY: sky.to_array() });
+        }
+        root["scene"] = 0.into();
+        root["scenes"] = json!([top]);
     }
     if !lights.is_empty() {
         root["extensions"] = json!({ "KHR_lights_punctual": { "lights": lights } });

@@ -66,6 +66,23 @@ pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
+/// Body of the fuzz target `scene_import`: the first byte chooses the format, the rest is the file.
+#[cfg(feature = "fuzz")]
+pub fn fuzz_scene_import(data: &[u8]) {
+    let Some((choice, bytes)) = data.split_first() else { return };
+    let name = ["fuzz.obj", "fuzz.ply", "fuzz.glb", "fuzz.gltf"][usize::from(choice % 4)];
+    if let Ok(scene) = from_bytes(name, bytes) {
+        // What passes the check must be fit for all that comes after it.
+        let flat = scene.flatten();
+        let _ = crate::plan::analyse(&scene, &flat, &crate::PlanOptions::default());
+        let _ = scene.camera_or_framed();
+        let _ = crate::export::write_glb(&scene, &crate::export::GlbOptions::default());
+    }
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        let _ = lights::apply(&mut Scene::default(), "fuzz.toml", text);
+    }
+}
+
 fn read(name: &str, bytes: &[u8], folder: &Folder) -> Result<Scene, SceneError> {
     let (plain, _) = compress::strip(name);
     let stem = Path::new(plain).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());

@@ -64,12 +64,10 @@ impl<'a> Data<'a> {
                 self.error(format!("accessors[{index}] has {} components instead of {N}", layout.components))
             );
         }
-        let mut values = Vec::with_capacity(layout.count);
-        for element in self.elements(index, &layout)? {
-            values.push(floats::<N>(element, layout.component, layout.normalized));
-        }
+        let convert = |element: &[u8]| floats::<N>(element, layout.component, layout.normalized);
+        let mut values: Vec<[f32; N]> = self.elements(index, &layout)?.map(convert).collect();
         for (at, element) in self.sparse(index, &layout)? {
-            values[at] = floats::<N>(element, layout.component, layout.normalized);
+            values[at] = convert(element);
         }
         Ok(values)
     }
@@ -81,10 +79,8 @@ impl<'a> Data<'a> {
         if layout.components != 1 || !integer {
             return Err(self.error(format!("accessors[{index}] is not a list of unsigned integers")));
         }
-        let mut values = Vec::with_capacity(layout.count);
-        for element in self.elements(index, &layout)? {
-            values.push(unsigned(element, layout.component));
-        }
+        let mut values: Vec<u32> =
+            self.elements(index, &layout)?.map(|element| unsigned(element, layout.component)).collect();
         for (at, element) in self.sparse(index, &layout)? {
             values[at] = unsigned(element, layout.component);
         }
@@ -179,7 +175,7 @@ impl<'a> Data<'a> {
         let values = self
             .slice(sparse.values.buffer_view.value(), offset(sparse.values.byte_offset.0)?, size, size, count)
             .ok_or_else(bad)??;
-        let mut pairs = Vec::with_capacity(count);
+        let mut pairs = Vec::new();
         for (at, value) in indices.chunks_exact(step).zip(values.chunks_exact(size)) {
             let at = unsigned(at, component) as usize;
             if at >= l.count {

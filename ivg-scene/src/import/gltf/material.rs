@@ -96,7 +96,7 @@ pub(super) fn read(
             specular: pbr.metallic_factor.0,
             roughness: pbr.roughness_factor.0,
             transmission,
-            transmission_colour: base,
+            transmission_colour: if transmission > 0.0 { base } else { Vec3::ONE },
             refractive_index: extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0),
         });
     }
