@@ -27,7 +27,7 @@ impl LoadedScene {
     }
 
     pub(crate) fn load(path: &std::path::Path, lights: Option<&std::path::Path>) -> Result<Self, Failure> {
-        let options = ImportOptions { lights: lights.map(Into::into), ..ImportOptions::default() };
+        let options = ImportOptions { lights: lights.map(Into::into) };
         let scene = import::load(path, &options).map_err(Failure::new)?;
         for warning in &scene.warnings {
             eprintln!("ivg: warning: {warning}");
@@ -60,7 +60,7 @@ pub(crate) fn plan(
     options: &BakeOptions,
 ) -> Result<(EffectPlan, Option<PilotReport>), Failure> {
     let LoadedScene { scene, flat } = loaded;
-    let mut plan = plan::analyse(scene, flat, &PlanOptions { energy_cutoff, ..PlanOptions::default() });
+    let mut plan = plan::analyse(scene, flat, &PlanOptions { energy_cutoff });
     if scene.require_light().is_err() {
         return Ok((plan, None));
     }

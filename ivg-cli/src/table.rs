@@ -1,8 +1,7 @@
 //! Plain text tables for people.
 
-/// Lays out rows in columns; the first row is the heading. Numbers (cells that start with a digit, a sign or a
-/// dash) are set flush right.
-pub(crate) fn layout(rows: &[Vec<String>]) -> String {
+/// Lays out rows in columns; the first row is the heading. The columns named in `numbers` are set flush right below it.
+pub(crate) fn layout(rows: &[Vec<String>], numbers: &[usize]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
         rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
@@ -12,7 +11,7 @@ pub(crate) fn layout(rows: &[Vec<String>]) -> String {
     for (number, row) in rows.iter().enumerate() {
         for (column, cell) in row.iter().enumerate() {
             let gap = widths[column] - cell.chars().count();
-            let right = number > 0 && cell.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '+');
+            let right = number > 0 && numbers.contains(&column);
             if column > 0 {
                 text.push_str("  ");
             }

@@ -9,8 +9,7 @@ use crate::failure::Failure;
 use crate::{files, table};
 
 pub(crate) fn run(arguments: &FetchArguments) -> Result<ExitCode, Failure> {
-    let mut options = FetchOptions::default();
-    options.schedule = arguments.schedule.0;
+    let options = FetchOptions::with_schedule(arguments.schedule.0);
     let as_json = arguments.json;
     let mut log = |event: &Event| files::print(&if as_json { json_line(event) } else { text_line(event) });
     let mut session = Session::open(&arguments.url, options, &mut log).map_err(Failure::new)?;

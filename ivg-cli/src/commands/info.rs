@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
             .iter()
             .map(|part| vec![part.what.clone(), part.offset.to_string(), part.bytes.to_string()]),
     );
-    files::print(&format!("\n{}", table::layout(&rows)));
+    files::print(&format!("\n{}", table::layout(&rows, &[1, 2])));
     Ok(ExitCode::SUCCESS)
 }
 

@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
         "{}: {} triangles\n\n{}",
         loaded.scene.name,
         loaded.flat.triangles.len(),
-        table::layout(&rows)
+        table::layout(&rows, &[2, 3])
     ));
     match pilot {
         Some(pilot) => files::print(&format!(
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
             pilot.photons,
         )),
         None => {
-            files::print("\nThe scene has no light; add one with --lights FILE.toml. No cost was measured.\n")
+            files::print("\nThe scene has no light; add one with --lights FILE.toml. No cost was measured.\n");
         }
     }
     for item in &loaded.scene.unsupported {

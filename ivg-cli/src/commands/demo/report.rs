@@ -63,9 +63,9 @@ impl Report {
         let files = FileSizes::new(input);
         let text = format!(
             "\n{}\nRMSE [W/(m² sr)] and mean CIE76 difference / 100 are against d; drawn on {}.\n\n{}\n{:.1} s in all.\n",
-            table::layout(&rows),
+            table::layout(&rows, &[1, 2, 3, 4, 5, 6]),
             input.renderer,
-            table::layout(&files.rows()),
+            table::layout(&files.rows(), &[1, 2, 3]),
             input.elapsed.as_secs_f64(),
         );
         let json = json!({
