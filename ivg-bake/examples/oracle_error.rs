@@ -223,11 +223,8 @@ fn lit_box() -> Scene {
         albedo: albedo.into(),
         ..Material::default()
     };
-    let light = Material {
-        emission: Vec3::new(18.0, 14.0, 7.0),
-        two_sided: false,
-        ..colour("light", [0.0; 3])
-    };
+    let light =
+        Material { emission: Vec3::new(18.0, 14.0, 7.0), two_sided: false, ..colour("light", [0.0; 3]) };
     Scene {
         name: "lit box".into(),
         meshes: vec![mesh],

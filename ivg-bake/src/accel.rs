@@ -12,8 +12,8 @@
 use glam::{Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::CwBvh;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
 use obvhs::ploc::PlocBuilder;
 use obvhs::ray::{Ray, RayHit};
@@ -104,9 +104,8 @@ impl TraceScene {
                 return f32::INFINITY;
             };
             let triangle = self.indices[leaf];
-            let closer = best
-                .as_ref()
-                .is_none_or(|b| (crossing.distance, triangle) < (b.distance, b.triangle));
+            let closer =
+                best.as_ref().is_none_or(|b| (crossing.distance, triangle) < (b.distance, b.triangle));
             if closer {
                 best = Some(Hit { distance: crossing.distance, triangle, weights: crossing.weights });
             }

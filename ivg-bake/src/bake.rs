@@ -103,8 +103,12 @@ pub fn bake(
             run(&tracer, &estimate, options.photons, &workers)?.finish(&estimate, &ready, power)
         }
     };
-    let grid =
-        IrradianceGrid::from_parts(ready.lattice, vectors, surroundings.validity, surroundings.blocked_edges)?;
+    let grid = IrradianceGrid::from_parts(
+        ready.lattice,
+        vectors,
+        surroundings.validity,
+        surroundings.blocked_edges,
+    )?;
     let watts = |quanta: [i128; 3]| DVec3::from(quanta.map(|q| q as f64)) * (power / Books::QUANTA);
     let stats = BakeStats {
         photons: options.photons,
@@ -255,7 +259,8 @@ pub(crate) fn run(
 fn lights(scene: &Scene, flat: &FlatScene, effects: Effects) -> Vec<BakedLight> {
     let mut used = vec![false; scene.materials.len()];
     flat.triangle_materials.iter().for_each(|&material| used[material as usize] = true);
-    let emissive = scene.materials.iter().zip(used).filter(|(m, used)| *used && m.emission != glam::Vec3::ZERO);
+    let emissive =
+        scene.materials.iter().zip(used).filter(|(m, used)| *used && m.emission != glam::Vec3::ZERO);
     let surfaces = emissive.map(|(material, _)| BakedLight { name: material.name.clone(), direct: false });
     let placed = scene.lights.iter().map(|light| BakedLight { name: light.name.clone(), direct: false });
     let sky = (effects.sky && scene.sky.is_some()).then(|| BakedLight { name: "sky".into(), direct: true });

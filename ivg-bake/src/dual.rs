@@ -21,9 +21,8 @@ pub(crate) struct Boxes {
 impl Boxes {
     /// The dual cells of `lattice`. `thickness` is the size of the cells along an axis of one vertex \[m\].
     pub(crate) fn dual_cells(lattice: &Lattice, thickness: [f64; 3], space: Space) -> Self {
-        let step = core::array::from_fn(|a| {
-            if lattice.step[a] > 0.0 { lattice.step[a] } else { thickness[a] }
-        });
+        let step =
+            core::array::from_fn(|a| if lattice.step[a] > 0.0 { lattice.step[a] } else { thickness[a] });
         let low = core::array::from_fn(|a| lattice.origin[a] - 0.5 * step[a]);
         Self {
             low: space.to_bake(low.into()).to_array(),

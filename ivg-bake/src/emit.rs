@@ -175,9 +175,7 @@ impl Emitters {
             Kind::Spot { position, axis, cos_inner, cos_outer, .. } => {
                 (position, hemisphere::about(axis, spot_cosine(u[0], cos_inner, cos_outer), u[1]), false)
             }
-            Kind::Directional { direction, .. } => {
-                (self.start(direction, [u[0], u[1]]), direction, false)
-            }
+            Kind::Directional { direction, .. } => (self.start(direction, [u[0], u[1]]), direction, false),
             Kind::Sky => {
                 let direction = hemisphere::sphere([u[0], u[1]]);
                 (self.start(direction, [u[2], u[3]]), direction, true)
@@ -217,7 +215,12 @@ impl Emitters {
                 let (direction, distance) = towards(place.position)?;
                 let cos = -place.normal.dot(direction);
                 cosine = if two_sided { cos.abs() } else { cos.max(0.0) };
-                (direction, distance * SHADOW_END, radiance, f64::from(cosine) * area / metres(distance).powi(2))
+                (
+                    direction,
+                    distance * SHADOW_END,
+                    radiance,
+                    f64::from(cosine) * area / metres(distance).powi(2),
+                )
             }
             Kind::Point { position, intensity } => {
                 let (direction, distance) = towards(position)?;
@@ -284,7 +287,11 @@ fn spot_falloff(cos: f32, cos_inner: f32, cos_outer: f32) -> f32 {
 fn spot_cosine(u: f32, cos_inner: f32, cos_outer: f32) -> f32 {
     let (full, ramp) = (1.0 - cos_inner, (cos_inner - cos_outer) / 3.0);
     let at = u * (full + ramp);
-    if at < ramp { cos_outer + (cos_inner - cos_outer) * libm::cbrtf(at / ramp) } else { cos_inner + (at - ramp) }
+    if at < ramp {
+        cos_outer + (cos_inner - cos_outer) * libm::cbrtf(at / ramp)
+    } else {
+        cos_inner + (at - ramp)
+    }
 }
 
 #[cfg(test)]

@@ -48,7 +48,9 @@ pub enum BakeError {
         index: u32,
     },
     /// Triangles nested so deep that the acceleration structure cannot be traversed.
-    #[error("the scene's triangles are nested too deep for the acceleration structure; simplify the geometry")]
+    #[error(
+        "the scene's triangles are nested too deep for the acceleration structure; simplify the geometry"
+    )]
     TreeTooDeep,
     /// The monitor asked to stop.
     #[error("cancelled after {done} of {total} photons")]

@@ -5,6 +5,8 @@
 mod accel;
 mod accumulate;
 mod bake;
+#[cfg(any(test, feature = "cases"))]
+pub mod cases;
 mod dual;
 mod emit;
 mod error;
@@ -27,5 +29,5 @@ mod workers;
 pub use bake::{BakeResult, BakeStats, BakedLight, bake};
 pub use error::BakeError;
 pub use monitor::{Monitor, Silent};
-pub use pilot::{PilotReport, pilot};
 pub use options::{BakeOptions, Estimator, automatic_bounds, dims_for};
+pub use pilot::{PilotReport, pilot};

@@ -115,7 +115,9 @@ pub fn automatic_bounds(flat: &FlatScene, dims: [u16; 3]) -> Result<(DVec3, DVec
 pub fn dims_for(min: DVec3, max: DVec3, longest: u16) -> [u16; 3] {
     let extent = max - min;
     let step = extent.max_element() / f64::from(longest.max(2) - 1);
-    extent.to_array().map(|e| if step > 0.0 { (e / step).round() as u16 + 1 } else { 1 }.clamp(2, longest.max(2)))
+    extent
+        .to_array()
+        .map(|e| if step > 0.0 { (e / step).round() as u16 + 1 } else { 1 }.clamp(2, longest.max(2)))
 }
 
 impl BakeOptions {

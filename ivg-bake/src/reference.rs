@@ -140,12 +140,10 @@ impl<'a> Oracle<'a> {
     #[must_use]
     pub fn clearance(&self, point: DVec3) -> f64 {
         let point = self.stage.space.to_bake(point);
-        let nearest = self
-            .stage
-            .surfaces
-            .triangles()
-            .iter()
-            .fold(f32::INFINITY, |nearest, t| nearest.min(closest_point(t, point).distance_squared(point)));
+        let nearest =
+            self.stage.surfaces.triangles().iter().fold(f32::INFINITY, |nearest, t| {
+                nearest.min(closest_point(t, point).distance_squared(point))
+            });
         f64::from(nearest.sqrt()) / self.stage.space.scale()
     }
 
@@ -230,7 +228,8 @@ struct View {
 impl View {
     fn new(camera: &Camera, aspect: f64) -> Self {
         let forward = (camera.target - camera.eye).normalize();
-        let right = forward.cross(camera.up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
+        let right =
+            forward.cross(camera.up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
         let half = libm::tan(0.5 * f64::from(camera.vertical_fov).min(TAU / 2.0));
         Self { forward, right: right * (half * aspect), up: right.cross(forward) * half }
     }

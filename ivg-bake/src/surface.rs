@@ -188,5 +188,9 @@ pub(crate) fn usable(
     object: impl FnOnce() -> String,
 ) -> Result<(), BakeError> {
     let good = colour.is_finite() && colour.min_element() >= 0.0 && colour.max_element() <= most;
-    if good { Ok(()) } else { Err(BakeError::BadNumber { object: object(), what, value: colour.to_string() }) }
+    if good {
+        Ok(())
+    } else {
+        Err(BakeError::BadNumber { object: object(), what, value: colour.to_string() })
+    }
 }

@@ -76,7 +76,13 @@ impl Tracer<'_> {
     /// Surfaces reflect evenly (Lambert). Russian roulette goes on with the share that the brightest channel keeps, so that
     /// the brightest channel of a photon is never more than it started with.
     #[inline]
-    pub(crate) fn trace<E: Estimate>(&self, photon: u64, estimate: &E, sums: &mut impl Sums, books: &mut Books) {
+    pub(crate) fn trace<E: Estimate>(
+        &self,
+        photon: u64,
+        estimate: &E,
+        sums: &mut impl Sums,
+        books: &mut Books,
+    ) {
         let stream = Stream::new(self.seed, photon);
         let emission = self.stage.emitters.emit(&stream);
         let (mut origin, mut direction, mut power) = (emission.origin, emission.direction, emission.power);
@@ -104,7 +110,8 @@ impl Tracer<'_> {
             let reflected = power * self.stage.surfaces.albedo(&hit);
             let brightest = power.max_element();
             // Below one quantum of the books a photon carries nothing that any sum would notice.
-            let kept = if brightest > 1.0 / ENERGY_QUANTA { reflected.max_element() / brightest } else { 0.0 };
+            let kept =
+                if brightest > 1.0 / ENERGY_QUANTA { reflected.max_element() / brightest } else { 0.0 };
             if unit(words[0]) >= kept {
                 add(&mut books.absorbed, energy);
                 return;

@@ -146,7 +146,8 @@ impl Stage<'_> {
         }
         let look = |eye: Vec3| {
             let lit = self.reached(eye, vertex);
-            let mask = if lit { Mask::seen(&self.accel, eye, cells.corner(at), cells.step) } else { Mask::NONE };
+            let mask =
+                if lit { Mask::seen(&self.accel, eye, cells.corner(at), cells.step) } else { Mask::NONE };
             View { eye, mask: Some(mask), lit }
         };
         let Some(points) = sides.of(vertex) else { return look(middle) };

@@ -81,7 +81,8 @@ fn random_direction(item: u64, step: u32) -> Vec3 {
 fn rays_at_vertices_and_edges_of_a_closed_sphere_never_leak() {
     let triangles = icosphere(4, Vec3::new(40.0, -90.0, 13.0), 1500.0);
     let scene = TraceScene::new(&triangles).unwrap();
-    let eyes: Vec<Vec3> = (0..6).map(|item| Vec3::new(40.0, -90.0, 13.0) + random_point(item, 0, 900.0)).collect();
+    let eyes: Vec<Vec3> =
+        (0..6).map(|item| Vec3::new(40.0, -90.0, 13.0) + random_point(item, 0, 900.0)).collect();
     let mut leaks = 0;
     for eye in &eyes {
         for [a, b, c] in &triangles {
@@ -134,8 +135,12 @@ fn rays_along_axes_and_in_the_plane_of_walls_agree_with_trying_every_triangle() 
                 p[(axis + 2) % 3] = v;
                 p
             };
-            let [a, b, c, d] =
-                [corner(-1000.0, -1000.0), corner(1000.0, -1000.0), corner(1000.0, 1000.0), corner(-1000.0, 1000.0)];
+            let [a, b, c, d] = [
+                corner(-1000.0, -1000.0),
+                corner(1000.0, -1000.0),
+                corner(1000.0, 1000.0),
+                corner(-1000.0, 1000.0),
+            ];
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
@@ -179,7 +184,8 @@ fn hits_close_to_the_origin_are_found() {
 
 #[test]
 fn of_equal_hits_the_lowest_index_counts() {
-    let triangle = [Vec3::new(-500.0, -500.0, 9.0), Vec3::new(500.0, -500.0, 9.0), Vec3::new(0.0, 700.0, 9.0)];
+    let triangle =
+        [Vec3::new(-500.0, -500.0, 9.0), Vec3::new(500.0, -500.0, 9.0), Vec3::new(0.0, 700.0, 9.0)];
     let mut triangles = icosphere(2, Vec3::ZERO, 1000.0);
     let first = triangles.len() as u32;
     triangles.extend([triangle; 40]);
@@ -217,7 +223,8 @@ fn boxes_on_a_floor_stay_closed() {
                 v[(axis + 2) % 3] = (high - low)[(axis + 2) % 3];
                 let mut corner = low;
                 corner[axis] = side[axis];
-                triangles.extend([[corner, corner + u, corner + u + v], [corner, corner + u + v, corner + v]]);
+                triangles
+                    .extend([[corner, corner + u, corner + u + v], [corner, corner + u + v, corner + v]]);
             }
         }
     }
@@ -226,6 +233,10 @@ fn boxes_on_a_floor_stay_closed() {
         let origin = Vec3::new(-600.0, -900.0, -400.0) + random_point(item, 0, 600.0);
         let direction = random_direction(item, 1);
         let expected = brute_force(&triangles, origin, direction, f32::MAX);
-        assert_eq!(scene.closest_hit(origin, direction, f32::MAX), expected, "ray {item} {origin} {direction}");
+        assert_eq!(
+            scene.closest_hit(origin, direction, f32::MAX),
+            expected,
+            "ray {item} {origin} {direction}"
+        );
     }
 }

@@ -1,0 +1,290 @@
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::{DAffine3, DVec3, Vec3};
+use ivg_scene::{FlatScene, LightKind, Scene};
+
+use super::bake;
+use crate::cases::{SceneBuilder, plan};
+use crate::reference::{Oracle, Sampling};
+use crate::{BakeError, BakeOptions, BakeResult, Estimator, Monitor, Silent};
+
+/// An open room with a block in it, lit by a square and a point.
+fn room() -> (Scene, FlatScene) {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(0.7, 0.0, true);
+    let lamp = builder.material(0.0, 9.0, false);
+    builder.cuboid(Vec3::ZERO, Vec3::new(2.0, 1.5, 1.0), wall, true);
+    builder.cuboid(Vec3::new(0.3, 0.0, 0.3), Vec3::new(0.8, 0.9, 0.7), wall, false);
+    builder.quad(Vec3::new(0.9, 1.45, 0.3), Vec3::X * 0.4, Vec3::Z * 0.4, lamp);
+    builder
+        .light(LightKind::Point { position: DVec3::new(1.7, 0.4, 0.8), intensity: Vec3::new(1.0, 0.5, 0.1) });
+    builder.build()
+}
+
+fn options(photons: u64) -> BakeOptions {
+    BakeOptions { dims: [7, 6, 5], photons, threads: Some(2), ..BakeOptions::default() }
+}
+
+fn baked(scene: &(Scene, FlatScene), options: &BakeOptions) -> BakeResult {
+    bake(&scene.0, &scene.1, &plan(&scene.0, 32), options, &Silent).unwrap()
+}
+
+#[test]
+fn one_two_and_five_threads_give_the_same_result() {
+    let scene = room();
+    for estimator in Estimator::ALL {
+        let [one, two, five] = [1, 2, 5].map(|threads| {
+            baked(&scene, &BakeOptions { estimator, threads: Some(threads), ..options(20_000) })
+        });
+        assert!(one.grid.largest_component() > 0.0);
+        assert_eq!(one, two, "{estimator:?}");
+        assert_eq!(one, five, "{estimator:?}");
+    }
+}
+
+#[test]
+fn the_seed_changes_the_result_and_nothing_else_does() {
+    let scene = room();
+    let first = baked(&scene, &options(5000));
+    assert_eq!(first, baked(&scene, &options(5000)));
+    let other = baked(&scene, &BakeOptions { seed: 2, ..options(5000) });
+    assert_ne!(first.grid.vectors(), other.grid.vectors());
+    assert_eq!(first.grid.validity(), other.grid.validity());
+}
+
+/// The scene a power of two larger: the same bytes (radiance is the same everywhere, so irradiance is too). Moved and scaled
+/// by other numbers: positions are rounded anew, so a few photons go another way; all but a few vertices agree.
+#[test]
+fn scale_and_place_do_not_matter() {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(0.6, 1.0, false);
+    builder.cuboid(Vec3::new(-0.75, -0.5, -0.25), Vec3::new(0.75, 0.5, 0.5), wall, true);
+    let (scene, flat) = builder.build();
+    let here = baked(&(scene.clone(), flat), &options(3000));
+    for exponent in [-13, 20] {
+        let scale = libm::scalbn(1.0, exponent);
+        let mut scene = scene.clone();
+        scene.nodes[0].transform = DAffine3::from_scale(DVec3::splat(scale));
+        let flat = scene.flatten();
+        let there = baked(&(scene, flat), &options(3000));
+        assert_eq!(here.grid.vectors(), there.grid.vectors(), "scaled by 2^{exponent}");
+        assert_eq!(here.grid.validity(), there.grid.validity());
+    }
+    let mut far = scene;
+    far.nodes[0].transform = DAffine3::from_translation(DVec3::new(1_048_576.0, -524_288.0, 0.0));
+    let flat = far.flatten();
+    let there = baked(&(far, flat), &options(3000));
+    let largest = here.grid.largest_component();
+    for (a, b) in
+        here.grid.vectors().iter().flatten().flatten().zip(there.grid.vectors().iter().flatten().flatten())
+    {
+        for (a, b) in a.iter().zip(b) {
+            // A photon of 3000 that just misses an edge changes a vertex by its own share.
+            assert!((a - b).abs() < 0.01 * largest, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn vertices_inside_solids_are_invalid_and_edges_through_walls_are_blocked() {
+    let scene = room();
+    let options = BakeOptions {
+        dims: [21, 16, 11],
+        bounds: Some((DVec3::ZERO, DVec3::new(2.0, 1.5, 1.0))),
+        ..options(2000)
+    };
+    let result = baked(&scene, &options);
+    let lattice = *result.grid.lattice();
+    let (mut inside, mut free, mut walls) = (0, 0, 0);
+    for index in 0..result.grid.vertex_count() {
+        let at = lattice.coords(index as u64);
+        let [i, j, k] = at;
+        let p = DVec3::from(lattice.position(i, j, k));
+        let block = |margin: f64| {
+            p.cmpgt(DVec3::new(0.3, 0.0, 0.3) - margin).all()
+                && p.cmplt(DVec3::new(0.8, 0.9, 0.7) + margin).all()
+        };
+        if block(-0.01) && j > 0 {
+            assert_eq!(result.grid.validity()[index], 0, "{p} lies in the block");
+            inside += 1;
+        } else if !block(0.01) {
+            assert!(result.grid.validity()[index] > 0, "{p} lies in the room");
+            free += 1;
+            walls += u32::from(at.iter().zip(lattice.dims).any(|(&c, n)| c == 0 || c + 1 == n));
+        }
+    }
+    assert!(inside > 50 && free > 1000 && walls > 500, "{inside} {free} {walls}");
+    // From beside the block into it, and along free air.
+    let bits = |i: u16, j: u16, k: u16| result.grid.blocked_edges()[lattice.index(i, j, k) as usize];
+    assert_eq!(bits(2, 4, 5) & 1, 0, "x = 0.2 to 0.3: a vertex on the block's face belongs to the room");
+    assert_eq!(bits(3, 4, 5) & 1, 1, "x = 0.3 to 0.4: through the block's face");
+    assert_eq!(bits(15, 8, 5), 0);
+    // Invalid vertices hold no light.
+    let dark = result.grid.vectors().iter().zip(result.grid.validity()).filter(|(_, v)| **v == 0);
+    assert!(dark.flat_map(|(v, _)| v.as_flattened().as_flattened()).all(|&x| x == 0.0));
+}
+
+/// At vertices on walls, in edges and near the block, bakes must be as bright as the oracle: no dark seams, no leaks. Dual
+/// cells average over half a step, so single vertices differ; the mean over all of them must not, by more than the averaging
+/// (2 %) and noise (4 standard errors of the oracle, whose paths are the fewer).
+#[test]
+fn vertices_at_walls_are_as_bright_as_the_oracle() {
+    let scene = room();
+    let (low, high) = (DVec3::ZERO, DVec3::new(2.0, 1.5, 1.0));
+    let options = BakeOptions { dims: [9, 7, 5], bounds: Some((low, high)), ..options(400_000) };
+    let result = baked(&scene, &options);
+    let lattice = *result.grid.lattice();
+    let oracle = Oracle::new(&scene.0, &scene.1).unwrap();
+    let mut chosen = Vec::new();
+    let mut points = Vec::new();
+    for index in (0..result.grid.vertex_count()).filter(|&index| result.grid.is_valid(index)) {
+        let at = lattice.coords(index as u64);
+        if at.iter().zip(lattice.dims).all(|(&c, n)| c > 0 && c + 1 < n) {
+            continue;
+        }
+        let p = DVec3::from(lattice.position(at[0], at[1], at[2]));
+        chosen.push(index);
+        // Where a vertex on the bounds looks from: a 32nd of a step inside.
+        points.push(p.clamp(low + DVec3::from(lattice.step) / 32.0, high - DVec3::from(lattice.step) / 32.0));
+    }
+    let sampling = Sampling { paths: 1024, seed: 5, threads: Some(2) };
+    let truth = oracle.irradiance_vectors(&points, sampling, &Silent).unwrap();
+    let (mut found, mut expected, mut variance) = (0.0, 0.0, 0.0);
+    for (index, truth) in chosen.iter().zip(&truth) {
+        for h in 0..6 {
+            found += f64::from(result.grid.vectors()[*index][h][1][h / 2].abs());
+            expected += truth.vectors[h][1][h / 2].abs();
+            variance += truth.standard_error[h][1][h / 2].powi(2);
+        }
+    }
+    assert!(chosen.len() > 100);
+    let bound = 0.02 + 4.0 * variance.sqrt() / expected;
+    assert!((found / expected - 1.0).abs() < bound, "{} within {bound}", found / expected);
+    assert!(bound < 0.035);
+}
+
+#[test]
+fn without_reflections_the_grid_is_dark_but_for_the_sky() {
+    let (scene, flat) = room();
+    let result = bake(&scene, &flat, &plan(&scene, 0), &options(1000), &Silent).unwrap();
+    assert_eq!(result.grid.largest_component().to_bits(), 0);
+    assert_eq!(result.stats.absorbed, DVec3::ZERO);
+    assert!(result.stats.lights.iter().all(|light| !light.direct));
+    let mut open = SceneBuilder::default();
+    open.sky(2.0);
+    let (scene, flat) = open.build();
+    let bounds = Some((DVec3::ZERO, DVec3::ONE));
+    let result =
+        bake(&scene, &flat, &plan(&scene, 0), &BakeOptions { bounds, ..options(20_000) }, &Silent).unwrap();
+    assert!(result.grid.largest_component() > 1.0);
+    assert_eq!(result.stats.lights.len(), 1);
+    assert!(result.stats.lights[0].direct);
+}
+
+#[test]
+fn emitted_power_is_that_of_the_lights() {
+    let (scene, flat) = room();
+    let stats = bake(&scene, &flat, &plan(&scene, 8), &options(50_000), &Silent).unwrap().stats;
+    let square = std::f64::consts::PI * 0.16 * 9.0;
+    let point = 4.0 * std::f64::consts::PI;
+    let expected = DVec3::splat(square) + DVec3::new(1.0, 0.5, 0.1) * point;
+    // Two kinds of photons, of which one in 50,000 more or less shifts a share: five standard deviations.
+    let share = square / (square + point);
+    let sigma = (share * (1.0 - share) / 50_000.0).sqrt() * (square + point);
+    assert!((stats.emitted - expected).abs().max_element() < 5.0 * sigma, "{} {expected}", stats.emitted);
+    let spent = stats.absorbed + stats.escaped + stats.cut;
+    assert!((stats.emitted - spent).abs().max_element() <= 1e-9 * stats.emitted.max_element());
+}
+
+#[test]
+fn grids_of_one_and_two_vertices_an_axis_work() {
+    let scene = room();
+    for dims in [[1, 5, 4], [2, 2, 2], [1, 1, 1], [3, 1, 2]] {
+        for estimator in Estimator::ALL {
+            let result = baked(&scene, &BakeOptions { dims, estimator, ..options(4000) });
+            assert!(result.grid.largest_component().is_finite(), "{dims:?}");
+        }
+    }
+}
+
+#[test]
+fn unusable_input_is_an_error_that_names_it() {
+    let (scene, flat) = room();
+    let plan = plan(&scene, 8);
+    let fails = |scene: &Scene, flat: &FlatScene, options: &BakeOptions| {
+        bake(scene, flat, &plan, options, &Silent).unwrap_err()
+    };
+    assert_eq!(fails(&scene, &flat, &options(0)), BakeError::NoPhotons);
+    assert!(matches!(fails(&scene, &flat, &options(u64::MAX)), BakeError::TooManyPhotons { bounces: 8, .. }));
+    let zero = BakeOptions { dims: [0, 2, 2], ..options(10) };
+    assert!(matches!(fails(&scene, &flat, &zero), BakeError::Lattice(_)));
+    let huge = BakeOptions { dims: [65_535; 3], ..options(10) };
+    assert!(matches!(fails(&scene, &flat, &huge), BakeError::Grid(_)));
+    let upside_down = BakeOptions { bounds: Some((DVec3::ONE, DVec3::ZERO)), ..options(10) };
+    assert!(matches!(fails(&scene, &flat, &upside_down), BakeError::Lattice(_)));
+
+    let dark = {
+        let mut scene = scene.clone();
+        scene.materials[1].emission = Vec3::ZERO;
+        scene.lights.clear();
+        scene
+    };
+    assert_eq!(fails(&dark, &flat, &options(10)), BakeError::NoLight);
+    for (value, named) in [(f32::NAN, "albedo"), (f32::INFINITY, "albedo"), (-0.5, "albedo"), (1.5, "albedo")]
+    {
+        let mut bad = scene.clone();
+        bad.materials[0].albedo.y = value;
+        let error = fails(&bad, &flat, &options(10)).to_string();
+        assert!(error.contains("material 0") && error.contains(named), "{error}");
+    }
+    let mut bad = scene.clone();
+    bad.lights[0].kind = LightKind::Point { position: DVec3::ZERO, intensity: Vec3::splat(f32::NAN) };
+    assert!(fails(&bad, &flat, &options(10)).to_string().contains("light 0"));
+    let mut broken = flat.clone();
+    broken.positions[3].z = f32::NAN;
+    let bounds = Some((DVec3::ZERO, DVec3::ONE));
+    let error = fails(&scene, &broken, &BakeOptions { bounds, ..options(10) });
+    assert!(error.to_string().contains("vertex 3"), "{error}");
+    let mut broken = flat.clone();
+    broken.triangles[2][1] = 9999;
+    assert!(matches!(
+        fails(&scene, &broken, &options(10)),
+        BakeError::BadIndex { triangle: 2, index: 9999, .. }
+    ));
+    let mut broken = flat.clone();
+    broken.triangle_materials[4] = 77;
+    assert!(matches!(
+        fails(&scene, &broken, &options(10)),
+        BakeError::BadIndex { triangle: 4, index: 77, .. }
+    ));
+}
+
+/// Cancels once so many photons are done.
+struct Impatient {
+    seen: AtomicU64,
+    patience: u64,
+}
+
+impl Monitor for Impatient {
+    fn progress(&self, done: u64, total: u64) {
+        assert!(done <= total);
+        self.seen.fetch_max(done, Ordering::Relaxed);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.seen.load(Ordering::Relaxed) >= self.patience
+    }
+}
+
+#[test]
+fn progress_reaches_the_end_and_cancelling_stops_early() {
+    let (scene, flat) = room();
+    let plan = plan(&scene, 8);
+    let patient = Impatient { seen: AtomicU64::new(0), patience: u64::MAX };
+    bake(&scene, &flat, &plan, &options(30_000), &patient).unwrap();
+    assert_eq!(patient.seen.into_inner(), 30_000);
+    let hasty = Impatient { seen: AtomicU64::new(0), patience: 5000 };
+    let error = bake(&scene, &flat, &plan, &options(10_000_000), &hasty).unwrap_err();
+    let BakeError::Cancelled { done, total: 10_000_000 } = error else { panic!("{error}") };
+    assert!((5000..100_000).contains(&done), "{done}");
+}

@@ -1,0 +1,161 @@
+use core::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+use ivg_scene::{Camera, LightKind};
+
+use super::{GatheredVectors, Oracle, Sampling, Shown};
+use crate::Silent;
+use crate::cases::{SceneBuilder, lit_rectangle_irradiance, lit_rectangle_scene};
+
+const SAMPLING: Sampling = Sampling { paths: 30_000, seed: 7, threads: Some(2) };
+
+/// Asserts each component of the green channel within five standard errors and `slack` of what is expected.
+#[track_caller]
+fn check(found: &GatheredVectors, expected: [[f64; 3]; 6], slack: f64) {
+    for (h, expected) in expected.iter().enumerate() {
+        for (k, expected) in expected.iter().enumerate() {
+            let (value, error) = (found.vectors[h][1][k], found.standard_error[h][1][k]);
+            let bound = 5.0 * error + slack + 1e-9;
+            assert!(
+                (value - expected).abs() < bound,
+                "hemisphere {h} axis {k}: {value} for {expected} ± {error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn closed_furnaces_have_their_closed_form() {
+    for albedo in [0.0, 0.5, 0.9] {
+        let mut builder = SceneBuilder::default();
+        let wall = builder.material(albedo, 1.0, false);
+        builder.cuboid(Vec3::ZERO, Vec3::new(1.0, 2.0, 0.7), wall, true);
+        let (scene, flat) = builder.build();
+        let oracle = Oracle::new(&scene, &flat).unwrap();
+        let found = oracle.irradiance_vectors(&[DVec3::new(0.3, 1.2, 0.5)], SAMPLING, &Silent).unwrap();
+        let rho = f64::from(albedo);
+        let along = PI * rho / (1.0 - rho);
+        let expected = core::array::from_fn(|h| {
+            core::array::from_fn(
+                |k| if k == h / 2 { along * if h % 2 == 0 { 1.0 } else { -1.0 } } else { 0.0 },
+            )
+        });
+        check(&found[0], expected, 0.0);
+    }
+}
+
+/// Two large parallel plates, the lower of which emits. Indirect radiosities: lower B1 − π, upper B2, with
+/// B1 = π / (1 − r1 r2), B2 = r2 B1. Plates of 400 m at 1 m distance lack less than 1e-3 of infinity.
+#[test]
+fn parallel_plates_have_their_closed_form() {
+    let mut builder = SceneBuilder::default();
+    let lower = builder.material(0.5, 1.0, false);
+    let upper = builder.material(0.8, 0.0, true);
+    let (u, v) = (Vec3::X * 400.0, Vec3::Y * 400.0);
+    builder.quad(Vec3::new(-200.0, -200.0, 0.0), u, v, lower);
+    builder.quad(Vec3::new(-200.0, -200.0, 1.0), u, v, upper);
+    let (scene, flat) = builder.build();
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    let found = oracle.irradiance_vectors(&[DVec3::new(0.0, 0.0, 0.4)], SAMPLING, &Silent).unwrap();
+    let b1 = PI / (1.0 - 0.5 * 0.8);
+    let (up, down) = (0.8 * b1, b1 - PI);
+    let across = 0.5 * (up + down);
+    let tilt = 0.5 * (up - down);
+    check(
+        &found[0],
+        [
+            [across, 0.0, tilt],
+            [-across, 0.0, tilt],
+            [0.0, across, tilt],
+            [0.0, -across, tilt],
+            [0.0, 0.0, up],
+            [0.0, 0.0, -down],
+        ],
+        1e-3 * b1,
+    );
+}
+
+#[test]
+fn a_rectangle_in_parallel_light_has_its_closed_form() {
+    let (scene, flat) = lit_rectangle_scene();
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    let place = (DVec3::new(0.5, 0.25, 1.0), Vec3::NEG_Z);
+    let found = oracle.irradiance(&[place], SAMPLING, &Silent).unwrap()[0];
+    let off = (found.irradiance - lit_rectangle_irradiance()).abs().max_element();
+    assert!(off < 5.0 * found.standard_error.max_element(), "{found:?} for {}", lit_rectangle_irradiance());
+    assert!(found.standard_error.max_element() < 0.01);
+}
+
+/// A disk of radius r in even light of radiance L gives π L r² / (r² + h²) at distance h on its axis. Here a white disk of 2048
+/// triangles lit by parallel light of 1 W/m²: L = 1/π.
+#[test]
+fn a_disk_has_its_closed_form() {
+    let mut builder = SceneBuilder::default();
+    let white = builder.material(1.0, 0.0, true);
+    let rim = |n: u32| {
+        let angle = f64::from(n) / 2048.0 * 2.0 * PI;
+        (DVec3::new(libm::cos(angle), libm::sin(angle), 0.0) * 0.5).as_vec3()
+    };
+    (0..2048).for_each(|n| builder.triangle([Vec3::ZERO, rim(n), rim(n + 1)], white));
+    builder.light(LightKind::Directional { direction: Vec3::NEG_Z, irradiance: Vec3::ONE });
+    let (scene, flat) = builder.build();
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    let found = oracle.irradiance(&[(DVec3::Z, Vec3::NEG_Z)], SAMPLING, &Silent).unwrap()[0];
+    assert!((found.irradiance.x - 0.2).abs() < 5.0 * found.standard_error.x, "{found:?}");
+}
+
+/// One diffuse reflection of a point light by a small patch: E = I cos / d² on the patch, radiance ρ E / π, irradiance at the
+/// eye L A cos cos' / D². The patch of 2 cm, 1 m away, is small to 1e-4.
+#[test]
+fn a_point_light_falls_off_with_the_square() {
+    for distance in [1.0, 2.0] {
+        let mut builder = SceneBuilder::default();
+        let grey = builder.material(0.5, 0.0, true);
+        builder.quad(Vec3::new(-0.01, -0.01, 0.0), Vec3::X * 0.02, Vec3::Y * 0.02, grey);
+        builder.light(LightKind::Point { position: DVec3::Z * distance, intensity: Vec3::splat(3.0) });
+        let (scene, flat) = builder.build();
+        let oracle = Oracle::new(&scene, &flat).unwrap();
+        let camera =
+            Camera { eye: DVec3::new(0.0, 0.0, 0.5), target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 0.01 };
+        let sampling = Sampling { paths: 8, ..SAMPLING };
+        let picture = oracle.render(&camera, (4, 4), Shown::All, sampling, &Silent).unwrap();
+        let expected = 0.5 / PI * 3.0 / (distance * distance);
+        for pixel in &picture.pixels {
+            // Within 2.5 mm of the middle E changes by less than 2e-5.
+            assert!((f64::from(pixel[1]) / expected - 1.0).abs() < 1e-4, "{pixel:?} for {expected}");
+        }
+        let dark = oracle.render(&camera, (4, 4), Shown::Indirect, sampling, &Silent).unwrap();
+        assert!(dark.pixels.iter().all(|p| *p == [0.0; 3]), "a lone patch has no indirect light");
+    }
+}
+
+#[test]
+fn pictures_show_emission_and_do_not_depend_on_threads() {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(0.5, 2.0, false);
+    builder.cuboid(Vec3::ZERO, Vec3::ONE, wall, true);
+    let (scene, flat) = builder.build();
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    let camera =
+        Camera { eye: DVec3::splat(0.5), target: DVec3::new(0.9, 0.5, 0.4), up: DVec3::Y, vertical_fov: 1.2 };
+    let render = |shown, threads| {
+        let sampling = Sampling { paths: 400, seed: 1, threads: Some(threads) };
+        oracle.render(&camera, (6, 4), shown, sampling, &Silent).unwrap()
+    };
+    let picture = render(Shown::All, 1);
+    assert_eq!((picture.width, picture.height, picture.pixels.len()), (6, 4, 24));
+    assert_eq!(picture, render(Shown::All, 3));
+    let mean = |p: &super::Picture| p.pixels.iter().map(|p| f64::from(p[0])).sum::<f64>() / 24.0;
+    // L = Le / (1 − ρ) = 4; the indirect part that a surface reflects is ρ (L − Le) = 1. 9600 paths whose radiance has a standard
+    // deviation near its mean: 1 %; five of them.
+    assert!((mean(&picture) - 4.0).abs() < 0.2, "{}", mean(&picture));
+    assert!((mean(&render(Shown::Indirect, 2)) - 1.0).abs() < 0.05, "{}", mean(&render(Shown::Indirect, 2)));
+}
+
+#[test]
+fn clearance_is_the_distance_to_the_nearest_surface() {
+    let (scene, flat) = lit_rectangle_scene();
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    assert!((oracle.clearance(DVec3::new(0.5, 0.25, 0.3)) - 0.3).abs() < 1e-6);
+    assert!((oracle.clearance(DVec3::new(-0.3, 0.25, 0.4)) - 0.5).abs() < 1e-6);
+}

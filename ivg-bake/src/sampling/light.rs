@@ -25,7 +25,8 @@ impl AliasTable {
         let mut scaled: Vec<f64> = weights.iter().map(|w| w / total * columns).collect();
         let mut entries: Vec<Entry> =
             (0u32..).zip(weights).map(|(alias, _)| Entry { threshold: FULL, alias }).collect();
-        let (mut small, mut large): (Vec<usize>, Vec<usize>) = (0..scaled.len()).partition(|&i| scaled[i] < 1.0);
+        let (mut small, mut large): (Vec<usize>, Vec<usize>) =
+            (0..scaled.len()).partition(|&i| scaled[i] < 1.0);
         while let (Some(&low), Some(&high)) = (small.last(), large.last()) {
             small.pop();
             entries[low] = Entry { threshold: (scaled[low] * FULL as f64) as u64, alias: high as u32 };
@@ -36,7 +37,8 @@ impl AliasTable {
             }
         }
         // What rounding leaves unpaired weighs 1 to within rounding, unless it weighs nothing.
-        let heaviest = (0..weights.len()).fold(0, |best, i| if weights[i] > weights[best] { i } else { best });
+        let heaviest =
+            (0..weights.len()).fold(0, |best, i| if weights[i] > weights[best] { i } else { best });
         for low in small.into_iter().filter(|&i| weights[i] <= 0.0) {
             entries[low] = Entry { threshold: 0, alias: heaviest as u32 };
         }

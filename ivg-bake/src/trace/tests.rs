@@ -1,49 +1,142 @@
-use glam::*;
-use ivg_scene::*;
-use crate::stage::*;
-use crate::sampling::rng::*;
+use glam::{DVec3, Vec3};
+
+use super::{Books, Tracer};
+use crate::accumulate::{NUMBERS, Sums};
+use crate::cases::SceneBuilder;
+use crate::estimate::{Estimate, Flight};
 use crate::sampling::hemisphere;
+use crate::sampling::rng::{Purpose, Stream};
+use crate::stage::{Effects, Stage};
+
+const DIFFUSE: Effects = Effects { textures: false, sky: false };
+
+/// Counts flights, and remembers the largest power.
+#[derive(Default)]
+struct Count {
+    flights: u64,
+    largest: f32,
+}
+
+impl Sums for Count {
+    fn add(&mut self, _bucket: usize, quanta: &[f32; NUMBERS]) {
+        self.flights += 1;
+        self.largest = self.largest.max(quanta[0]);
+    }
+}
+
+struct EachFlight;
+
+impl Estimate for EachFlight {
+    fn buckets(&self) -> usize {
+        1
+    }
+
+    fn deposit(&self, flight: &Flight, sums: &mut impl Sums) {
+        sums.add(0, &[flight.power.max_element(); NUMBERS]);
+    }
+
+    fn vectors(&self, _sums: &[i64], _vertex: usize, _power: f64) -> ivg_grid::HemisphereVectors {
+        ivg_grid::HemisphereVectors::default()
+    }
+}
+
+fn trace(builder: SceneBuilder, photons: u64, max_bounces: u32) -> (Books, Count) {
+    let (scene, flat) = builder.build();
+    let stage = Stage::new(&scene, &flat, DIFFUSE, None).unwrap();
+    let tracer = Tracer { stage: &stage, seed: 3, max_bounces };
+    let (mut books, mut count) = (Books::default(), Count::default());
+    (0..photons).for_each(|photon| tracer.trace(photon, &EachFlight, &mut count, &mut books));
+    (books, count)
+}
+
+fn room(albedo: f32) -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(albedo, 1.0, false);
+    builder.cuboid(Vec3::new(-1.0, -0.7, -1.3), Vec3::ONE, wall, true);
+    builder
+}
+
+fn assert_balanced(books: &Books) {
+    for c in 0..3 {
+        let spent = books.absorbed[c] + books.escaped[c] + books.cut[c];
+        assert_eq!(books.emitted[c], spent, "channel {c} of {books:?}");
+    }
+    assert!(books.emitted[1] > 0);
+}
+
 #[test]
-fn dbg() {
-    let mut mesh = Mesh::default();
-    let mut add = |low: [f32; 3], high: [f32; 3], materials: [u32; 6]| {
-        let (low, high) = (Vec3::from(low), Vec3::from(high));
-        for (face, material) in materials.into_iter().enumerate() {
-            let (axis, side) = (face / 2, face % 2);
-            let (mut u, mut v) = (Vec3::ZERO, Vec3::ZERO);
-            u[(axis + 1) % 3] = (high - low)[(axis + 1) % 3];
-            v[(axis + 2) % 3] = (high - low)[(axis + 2) % 3];
-            let mut corner = low;
-            corner[axis] = if side == 0 { low[axis] } else { high[axis] };
-            let first = mesh.positions.len() as u32;
-            mesh.positions.extend([corner, corner + u, corner + u + v, corner + v]);
-            mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
-            mesh.triangle_materials.extend([material; 2]);
-        }
-    };
-    add([0.0; 3], [2.0; 3], [0; 6]);
-    add([0.3, 0.0, 0.4], [0.9, 1.2, 1.0], [0; 6]);
-    add([0.7, 1.95, 0.7], [1.3, 1.95, 1.3], [1; 6]);
-    let scene = Scene { meshes: vec![mesh], nodes: vec![Node { name: "box".into(), mesh: 0, transform: glam::DAffine3::IDENTITY }],
-        materials: vec![Material::default(), Material { emission: Vec3::ONE, two_sided: false, ..Material::default() }], ..Scene::default() };
-    let flat = scene.flatten();
-    let stage = Stage::new(&scene, &flat, Effects { textures: false, sky: false }, None).unwrap();
-    for path in 0..20000 {
+fn energy_books_balance_to_the_last_quantum() {
+    let mut open = SceneBuilder::default();
+    let white = open.material(0.8, 0.0, true);
+    let lamp = open.material(0.1, 3.0, true);
+    open.quad(Vec3::ZERO, Vec3::X, Vec3::Y, white);
+    open.quad(Vec3::new(0.2, 0.2, 1.0), Vec3::X * 0.5, Vec3::Y * 0.5, lamp);
+    let (books, _) = trace(open, 20_000, 6);
+    assert_balanced(&books);
+    assert!(books.escaped[0] > 0 && books.absorbed[0] > 0);
+}
+
+/// A photon of a furnace is reflected with probability ρ each time, so a share ρ of the energy flies on after every
+/// reflection; five standard deviations of a binomial share of 20,000.
+#[test]
+fn every_reflection_keeps_the_albedo_and_nothing_escapes_a_closed_room() {
+    let (books, _) = trace(room(0.6), 20_000, 1000);
+    assert_balanced(&books);
+    assert_eq!(books.escaped, [0; 3], "light left a closed room");
+    assert_eq!(books.cut, [0; 3]);
+    for k in 0..3 {
+        let (before, after) = (books.after_bounces[k] as f64, books.after_bounces[k + 1] as f64);
+        let photons = 20_000.0 * 0.6f64.powi(k as i32);
+        let sigma = (0.6 * 0.4 / photons).sqrt();
+        assert!((after / before - 0.6).abs() < 5.0 * sigma, "reflection {k}: {}", after / before);
+    }
+}
+
+#[test]
+fn a_closed_room_of_albedo_one_ends_at_the_bounce_cap_and_says_so() {
+    let (books, count) = trace(room(1.0), 300, 500);
+    assert_balanced(&books);
+    assert_eq!(books.cut, books.emitted);
+    assert_eq!(books.escaped, [0; 3]);
+    assert_eq!(books.flights, 300 * 501);
+    // All but the first flight of each photon.
+    assert_eq!(count.flights, 300 * 500);
+}
+
+#[test]
+fn no_photon_grows_and_first_flights_are_not_deposited() {
+    let (books, count) = trace(room(0.9), 2000, 100);
+    assert!(count.largest <= 1.0, "{}", count.largest);
+    assert_eq!(count.flights, books.flights - 2000);
+    let (_, none) = trace(room(0.9), 2000, 0);
+    assert_eq!(none.flights, 0);
+}
+
+/// Walls in coordinate planes of bake space, where a bound of the error relative to the coordinate would be zero: a ray
+/// that starts on such a wall must not meet it again from behind.
+#[test]
+fn paths_stay_inside_a_closed_box_on_a_floor() {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(0.9, 1.0, false);
+    builder.cuboid(Vec3::ZERO, Vec3::splat(2.0), wall, true);
+    builder.cuboid(Vec3::new(0.3, 0.0, 0.4), Vec3::new(0.9, 1.2, 1.0), wall, false);
+    let (scene, flat) = builder.build();
+    let stage = Stage::new(&scene, &flat, DIFFUSE, None).unwrap();
+    let (low, high) = (DVec3::new(0.299, -0.001, 0.399), DVec3::new(0.901, 1.201, 1.001));
+    for path in 0..3000 {
         let stream = Stream::new(3, path);
         let mut origin = stage.space.to_bake(DVec3::new(0.6, 0.6, 0.7));
         let u = stream.uniforms(0, Purpose::Gather);
-        let mut d = hemisphere::sphere([u[0], u[1]]);
-        for bounce in 1..20 {
-            let Some(hit) = stage.accel.closest_hit(origin, d, f32::MAX) else { panic!("escaped") };
+        let mut direction = hemisphere::sphere([u[0], u[1]]);
+        for bounce in 1..40 {
+            let hit = stage.accel.closest_hit(origin, direction, f32::MAX).expect("the room is closed");
             let point = stage.surfaces.point(hit.triangle, hit.weights);
-            if path == 3 { println!("{bounce} {hit:?} o {origin} d {d} n {}", point.normal); }
-            let w = stage.space.to_world(point.position);
-            let inside = w.x > 0.2999 && w.x < 0.9001 && w.y < 1.2001 && w.z > 0.3999 && w.z < 1.0001;
-            assert!(inside, "path {path} bounce {bounce} {hit:?} {w} from {} {d}", stage.space.to_world(origin));
-            let side = point.facing(-d);
+            let place = stage.space.to_world(point.position);
+            assert!(place.cmpge(low).all() && place.cmple(high).all(), "path {path} got out to {place}");
+            let side = point.facing(-direction);
             origin = point.origin(side);
             let u = stream.uniforms(bounce, Purpose::Reflection);
-            d = hemisphere::cosine(side, [u[0], u[1]]);
+            direction = hemisphere::cosine(side, [u[0], u[1]]);
         }
     }
 }
