@@ -75,7 +75,7 @@ impl Costs {
         }
     }
 
-    /// How far the surface moves, estimated, in units of the surface: for quadrics the root of the mean over the area of
+    /// How far the surface moves, estimated \[m\]: for quadrics the root of the mean over the area of
     /// the squared distances of `v` to the planes that it stands for; for Melax's cost the cost itself, which is a length.
     pub(crate) fn distance(&self, surface: &Surface, u: u32, v: u32) -> f64 {
         match self.kind {

@@ -24,7 +24,7 @@ const RETRY_SHARE: usize = 16;
 pub(crate) struct Collapse {
     pub(crate) vertex: u32,
     pub(crate) parent: u32,
-    /// Estimated distance, in units of the surface.
+    /// Estimated distance \[m\].
     pub(crate) distance: f64,
 }
 

@@ -38,7 +38,7 @@ pub fn build(
     report.faces = mesh.triangles.len();
     let order = find(surface, &mesh.wedges, options.cost, &mut report, progress);
     report.base_vertices = report.vertices - order.collapses.len();
-    let result = arrange(mesh, &order, frame.unit);
+    let result = arrange(mesh, &order);
     let base = result.base_vertices;
     let at_base = |face: &&[u32; 3]| result.introduction(**face).is_some_and(|(level, _)| level <= base);
     report.base_faces = result.faces.iter().filter(at_base).count();
@@ -46,12 +46,10 @@ pub fn build(
     Ok((result, report))
 }
 
-/// Where the mesh lies: costs are computed about the centre of its box and in units of a power of two near its size, so
-/// that neither a distant origin nor a tiny or huge scale costs precision.
+/// Where the mesh lies: costs are computed about the centre of its box, so that a distant origin costs no precision. Its
+/// scale costs none either: the sixth power of any f32 is a normal f64.
 struct Frame {
     centre: DVec3,
-    /// Metres in one unit of the surface.
-    unit: f64,
     /// \[m\]
     diagonal: f64,
     /// \[m\]
@@ -62,29 +60,20 @@ impl Frame {
     fn around(positions: &[[f32; 3]]) -> Self {
         let exact = |p: [f32; 3]| DVec3::from(p.map(f64::from));
         let Some(&first) = positions.first() else {
-            return Self { centre: DVec3::ZERO, unit: 1.0, diagonal: 0.0, spacing: 0.0 };
+            return Self { centre: DVec3::ZERO, diagonal: 0.0, spacing: 0.0 };
         };
         let (mut low, mut high) = (exact(first), exact(first));
         for &p in positions {
             low = low.min(exact(p));
             high = high.max(exact(p));
         }
-        let extent = (high - low).max_element();
-        let mut unit = 1.0;
-        // f32 extents are below 2^129 and, if not 0, at least 2^-149: a few hundred exact steps.
-        while extent > unit {
-            unit *= 2.0;
-        }
-        while extent > 0.0 && extent <= unit * 0.5 {
-            unit *= 0.5;
-        }
         let largest = positions.iter().flatten().fold(0.0f32, |m, x| m.max(x.abs()));
         let spacing = largest - f32::from_bits(largest.to_bits().saturating_sub(1));
-        Self { centre: (low + high) * 0.5, unit, diagonal: low.distance(high), spacing }
+        Self { centre: (low + high) * 0.5, diagonal: low.distance(high), spacing }
     }
 
     fn inside(&self, p: [f32; 3]) -> DVec3 {
-        (DVec3::from(p.map(f64::from)) - self.centre) / self.unit
+        DVec3::from(p.map(f64::from)) - self.centre
     }
 }
 
@@ -106,7 +95,7 @@ fn describe(surface: &Surface, report: &mut BuildReport) {
 }
 
 /// Renumbers vertices: what is left first, then what was collapsed last.
-fn arrange(mesh: IndexedMesh, order: &Order, unit: f64) -> ProgressiveMesh {
+fn arrange(mesh: IndexedMesh, order: &Order) -> ProgressiveMesh {
     let vertices = mesh.positions.len();
     let base = vertices - order.collapses.len();
     let mut gone = vec![false; vertices];
@@ -130,7 +119,7 @@ fn arrange(mesh: IndexedMesh, order: &Order, unit: f64) -> ProgressiveMesh {
         .collapses
         .iter()
         .map(|c| {
-            worst = worst.max(c.distance * unit);
+            worst = worst.max(c.distance);
             (worst as f32).min(f32::MAX)
         })
         .collect();

@@ -130,3 +130,6 @@ pub(crate) fn twice_area([a, b, c]: [DVec3; 3]) -> DVec3 {
 fn squared_edges([a, b, c]: [DVec3; 3]) -> f64 {
     a.distance_squared(b) + b.distance_squared(c) + c.distance_squared(a)
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,7 +8,7 @@ use crate::input::index;
 /// A triangle mesh that loses vertices one by one.
 #[derive(Debug)]
 pub(crate) struct Surface {
-    /// Positions about the centre of the bounding box, scaled by a power of two so that the largest extent is about 1.
+    /// Positions about the centre of the bounding box \[m\].
     pub(crate) positions: Vec<DVec3>,
     /// Vertices of each face; meaningless once the face is gone.
     pub(crate) faces: Vec<[u32; 3]>,
@@ -23,7 +23,7 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
-    /// Takes over a cleaned mesh; `positions` are its positions centred and scaled.
+    /// Takes over a cleaned mesh; `positions` are its positions about its centre.
     pub(crate) fn new(mesh: &IndexedMesh, positions: Vec<DVec3>) -> Self {
         let faces: Vec<[u32; 3]> = (0..mesh.triangles.len()).map(|i| mesh.triangle_vertices(i)).collect();
         Self {

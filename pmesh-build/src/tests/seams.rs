@@ -74,6 +74,32 @@ fn a_border_between_materials_stays_where_it_is() {
     }
 }
 
+/// A disc of another material in a plane, where nothing but its border has a shape.
+#[test]
+fn a_curved_border_between_materials_keeps_its_shape() {
+    let mut mesh = grid(41, |_, _| 0.0);
+    let distance = |p: [f32; 3]| (p[0] - 0.5).hypot(p[1] - 0.5);
+    let inside = |mesh: &IndexedMesh, i: usize| {
+        let corners = mesh.triangle_vertices(i).map(|v| mesh.positions[v as usize]);
+        distance([0, 1, 2].map(|k| corners.iter().map(|p| p[k]).sum::<f32>() / 3.0)) < 0.3
+    };
+    mesh.materials = (0..mesh.triangles.len()).map(|i| u16::from(inside(&mesh, i))).collect();
+    let area = |mesh: &IndexedMesh| -> f32 {
+        let faces = (0..mesh.triangles.len()).filter(|&i| mesh.material(i) == 1);
+        faces
+            .map(|i| {
+                let [a, b, c] = mesh.triangle_vertices(i).map(|v| mesh.positions[v as usize]);
+                ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
+            })
+            .sum()
+    };
+    let (progressive, _) = built(&mesh, &BuildOptions::default());
+    let full = area(&progressive.full());
+    // A polygon of 12 corners in a circle lacks 5 % of its area; four more vertices are those of the square.
+    let coarse = area(&progressive.level(16));
+    assert!((coarse - full).abs() < 0.08 * full, "{coarse} of {full}");
+}
+
 #[test]
 fn equal_wedges_are_merged_and_different_ones_kept() {
     // A cube as exporters write it: 24 vertices, one normal for each side.

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::vec;
 use std::vec::Vec;
 
-use crate::decode::{check, decode_all};
+use crate::decode::{check, decode_all, decode_packet};
 use crate::encode::{EncodeOptions, encode};
 use crate::limits::Limits;
 use crate::mesh::Wedges;
 use crate::progressive::ProgressiveMesh;
 use crate::replay::Replay;
-use crate::tests::Parts;
+use crate::tests::{Parts, expected, header_of};
 
 /// Vertex k collapses onto k − 1, face k is (k, k + 1, k + 2). The payload of one packet: positions 0, corners 60, parents
 /// 96, switch codes (2 bits) 104.
@@ -136,6 +136,7 @@ fn a_face_of_an_earlier_packet_is_refused_in_a_later_one() {
 #[test]
 fn a_refused_packet_leaves_the_levels_before_as_they_were() {
     let mut parts = parts(&strip(), 4);
+    let right = parts.build();
     let mut payload = parts.packets[1].2.clone();
     *payload.last_mut().unwrap() |= 0x80;
     parts.set_payload(1, payload);
@@ -153,4 +154,13 @@ fn a_refused_packet_leaves_the_levels_before_as_they_were() {
     replay.set_level(4).unwrap();
     assert_eq!(replay.indices(), [[0, 1, 2], [1, 2, 3]]);
     assert_eq!(replay.levels(), Some(3..=4));
+    // When the packet comes again as it should be, it is taken as if nothing had been.
+    let header = header_of(&right);
+    let range = header.packet_range(1);
+    let packet = decode_packet(&header, 1, &right[range.start as usize..range.end as usize]).unwrap();
+    replay.apply(&packet).unwrap();
+    for level in [5, 3, 4, 3, 5] {
+        replay.set_level(level).unwrap();
+        assert_eq!(replay.mesh(), expected(&strip(), level));
+    }
 }
