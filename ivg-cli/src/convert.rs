@@ -6,7 +6,8 @@ use pmesh_format::{IndexedMesh, Wedges};
 
 use crate::failure::Failure;
 
-/// One scene mesh in its own space; every vertex of the source is a wedge.
+/// One scene mesh in its own space; every vertex of the source is a wedge. A mesh without normals gets some if its sharp
+/// edges would be lost otherwise: the build joins vertices at one place.
 ///
 /// # Errors
 ///
@@ -17,7 +18,9 @@ pub(crate) fn indexed_mesh(mesh: &Mesh, materials: &[Material]) -> Result<Indexe
         mesh.triangles.clone(),
     );
     out.origin = mesh.origin.to_array();
-    out.wedges.normals = mesh.normals.iter().map(|n| n.to_array()).collect();
+    if !mesh.normals.is_empty() || mesh.has_unstored_creases() {
+        out.wedges.normals = mesh.shading_normals().iter().map(|n| n.to_array()).collect();
+    }
     out.wedges.uvs = mesh.uvs.iter().map(|uv| uv.to_array()).collect();
     set_materials(&mut out, &mesh.triangle_materials, materials, &mesh.name)?;
     Ok(out)

@@ -37,6 +37,10 @@ pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
             .chain(&report.grid)
             .map(|file| vec![file.uri.clone(), table::bytes(file.byte_length)]),
     );
-    files::print(&format!("{}\nserve it with: ivg serve {}\n", table::layout(&rows, &[1]), directory.display()));
+    files::print(&format!(
+        "{}\nserve it with: ivg serve {}\n",
+        table::layout(&rows, &[1]),
+        directory.display()
+    ));
     Ok(ExitCode::SUCCESS)
 }

@@ -59,7 +59,9 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
             pilot.photons,
         )),
         None => {
-            files::print("\nThe scene has no light; add one with --lights FILE.toml. No cost was measured.\n");
+            files::print(
+                "\nThe scene has no light; add one with --lights FILE.toml. No cost was measured.\n",
+            );
         }
     }
     for item in &loaded.scene.unsupported {
