@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 
 /// Edge of the blocks that are skipped as a whole where the surface is far \[samples\].
-const BLOCK: usize = 8;
+const BLOCK: usize = 4;
 /// How much faster than a true distance a field may change: 1 would be exact; blends and ellipsoids stay below this.
 const STEEPNESS: f64 = 1.7;
 /// Steps of Newton's method that move a vertex onto the surface.

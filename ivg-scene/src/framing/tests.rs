@@ -51,16 +51,13 @@ fn a_closed_room_is_seen_from_inside_along_its_length() {
 
 #[test]
 fn an_open_box_is_seen_through_its_opening() {
-    for side in 0..6 {
+    for (side, outwards) in DIRECTIONS.into_iter().enumerate() {
         let scene = room(DVec3::new(1.0, 1.2, 0.8), DVec3::ZERO, &[side]);
         let camera = scene.camera_or_framed();
         let towards = (camera.target - camera.eye).normalize();
-        assert!(towards.dot(DIRECTIONS[side]) < -0.99, "side {side}: looks {towards}");
+        assert!(towards.dot(outwards) < -0.99, "side {side}: looks {towards}");
         let (min, max) = scene.bounds();
-        assert!(
-            camera.eye.dot(DIRECTIONS[side]) > max.abs().max(min.abs()).dot(DIRECTIONS[side].abs()),
-            "outside"
-        );
+        assert!(camera.eye.dot(outwards) > max.abs().max(min.abs()).dot(outwards.abs()), "outside");
         Scene { camera: Some(camera), ..scene }.check().unwrap();
     }
 }

@@ -273,7 +273,7 @@ fn faults_are_named() {
     });
     check_refused("version 1.0", |d| d["asset"]["version"] = json!("1.0"));
     check_refused("accessor 9 does not exist", |d| {
-        d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(9)
+        d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(9);
     });
     check_refused("accessors[3].bufferView", |d| d["accessors"][3]["bufferView"] = json!(17));
     check_refused("children", |d| d["nodes"][0]["children"] = json!([4]));
