@@ -122,20 +122,18 @@ fn compare(baked: &[ivg_grid::HemisphereVectors], truth: &[GatheredVectors]) -> 
     let [mut all, mut axis] = [[0.0; 2]; 2];
     let mut means = [0.0; 2];
     for (baked, truth) in baked.iter().zip(truth) {
-        for hemisphere in 0..6 {
-            for channel in 0..3 {
-                for component in 0..3 {
-                    let expected = truth.vectors[hemisphere][channel][component];
-                    let found = f64::from(baked[hemisphere][channel][component]);
-                    all[0] += (found - expected).powi(2);
-                    all[1] += expected.powi(2);
-                    if component == hemisphere / 2 {
-                        axis[0] += (found - expected).powi(2);
-                        axis[1] += expected.powi(2);
-                        means[0] += found.abs();
-                        means[1] += expected.abs();
-                    }
-                }
+        let found = baked.as_flattened().as_flattened();
+        let expected = truth.vectors.as_flattened().as_flattened();
+        for (n, (&found, &expected)) in found.iter().zip(expected).enumerate() {
+            let found = f64::from(found);
+            all[0] += (found - expected).powi(2);
+            all[1] += expected.powi(2);
+            // The component n % 3 of the hemisphere n / 9, whose axis is half its number.
+            if n % 3 == n / 9 / 2 {
+                axis[0] += (found - expected).powi(2);
+                axis[1] += expected.powi(2);
+                means[0] += found.abs();
+                means[1] += expected.abs();
             }
         }
     }

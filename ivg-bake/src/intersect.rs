@@ -2,8 +2,9 @@
 //!
 //! S. Woop, C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2(1), 2013: the triangle is sheared so
 //! that the ray becomes the z axis; the three edge functions of neighbours sharing an edge are then the same numbers
-//! with opposite sign, so that a ray through an edge or a vertex cannot pass between them. Where an edge function is
-//! exactly zero it is computed again in f64. Both sides of a triangle are hit.
+//! with opposite sign, and zero counts as inside, so that a ray through an edge or a vertex cannot pass between them. (The
+//! paper computes an edge function that is zero again in f64, to know on which side of the edge the ray really is; hit is
+//! enough for us.) Both sides of a triangle are hit.
 
 use glam::Vec3;
 
@@ -68,17 +69,9 @@ impl ShearedRay {
             [x, y, z]
         };
         let [a, b, c] = [relative(&triangle[0]), relative(&triangle[1]), relative(&triangle[2])];
-        let mut u = c[0] * b[1] - c[1] * b[0];
-        let mut v = a[0] * c[1] - a[1] * c[0];
-        let mut w = b[0] * a[1] - b[1] * a[0];
-        if u == 0.0 || v == 0.0 || w == 0.0 {
-            let edge = |p: [f32; 3], q: [f32; 3]| {
-                (f64::from(p[0]) * f64::from(q[1]) - f64::from(p[1]) * f64::from(q[0])) as f32
-            };
-            u = edge(c, b);
-            v = edge(a, c);
-            w = edge(b, a);
-        }
+        let u = c[0] * b[1] - c[1] * b[0];
+        let v = a[0] * c[1] - a[1] * c[0];
+        let w = b[0] * a[1] - b[1] * a[0];
         if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
             return None;
         }
@@ -89,6 +82,6 @@ impl ShearedRay {
         let reciprocal = 1.0 / determinant;
         let distance = (u * a[2] + v * b[2] + w * c[2]) * sz * reciprocal;
         let hit = distance > 0.0 && distance <= limit;
-        hit.then(|| Crossing { distance, weights: [u * reciprocal, v * reciprocal, w * reciprocal] })
+        hit.then_some(Crossing { distance, weights: [u * reciprocal, v * reciprocal, w * reciprocal] })
     }
 }

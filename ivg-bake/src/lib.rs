@@ -1,4 +1,78 @@
 //! Light transport on the CPU: photons traced through a scene into an irradiance vector grid.
+//!
+//! ```text
+//! scene, plan ─► stage (bake space, tree of triangles, lights)
+//!                  │
+//!                  ├─► validity, region   what each vertex of the lattice sees, and whether light reaches it
+//!                  │
+//!                  └─► emit ─► trace ─► estimate ─► accumulate ─► IrradianceGrid
+//!                      photons  flights  deposits   exact sums
+//! ```
+//!
+//! [`bake()`] makes a grid, [`pilot()`] measures what that will cost, [`reference::Oracle`] is the slow path tracer that
+//! everything is compared with.
+//!
+//! Units: metres, watts, W/m², W/(m² sr); colours are linear RGB with Rec. 709 primaries; world space is right-handed. What
+//! an irradiance vector is, is said in `spec/ivg.md`: the integral over a hemisphere of radiance times direction, pointing to
+//! where the light comes from.
+//!
+//! # Guarantees
+//!
+//! * For one release and target the result depends on scene, plan and options alone: random numbers are a function of
+//!   (seed, photon, reflection), and deposits are added as integers, so neither the number of threads nor their order matters.
+//! * The energy books balance: emitted = absorbed + escaped + cut off, exactly.
+//! * A scene far from its origin, in millimetres or in kilometres, gives the same grid.
+//! * Unusable input is an error that names it.
+//!
+//! # Example
+//!
+//! ```
+//! use glam::{DAffine3, DVec3, Vec3};
+//! use ivg_bake::{BakeOptions, Silent, bake};
+//! use ivg_scene::{Effect, EffectPlan, Light, LightKind, Material, Mesh, Need, Node, PlannedEffect, Scene};
+//!
+//! let floor = Mesh {
+//!     positions: vec![Vec3::ZERO, Vec3::Z, Vec3::X],
+//!     triangles: vec![[0, 1, 2]],
+//!     triangle_materials: vec![0],
+//!     ..Mesh::default()
+//! };
+//! let scene = Scene {
+//!     meshes: vec![floor],
+//!     nodes: vec![Node { name: "floor".into(), mesh: 0, transform: DAffine3::IDENTITY }],
+//!     materials: vec![Material::default()],
+//!     lights: vec![Light {
+//!         name: "lamp".into(),
+//!         kind: LightKind::Point { position: DVec3::new(0.3, 0.5, 0.3), intensity: Vec3::ONE },
+//!     }],
+//!     ..Scene::default()
+//! };
+//! let plan = EffectPlan {
+//!     effects: vec![PlannedEffect {
+//!         effect: Effect::DiffuseIndirect,
+//!         need: Need::Needed,
+//!         reason: "a floor under a lamp".into(),
+//!         cost: None,
+//!     }],
+//!     max_bounces: 4,
+//!     energy_cutoff: 0.01,
+//! };
+//! let options = BakeOptions {
+//!     dims: [4; 3],
+//!     bounds: Some((DVec3::new(0.0, 0.1, 0.0), DVec3::ONE)),
+//!     photons: 10_000,
+//!     ..BakeOptions::default()
+//! };
+//! let result = bake(&scene, &scene.flatten(), &plan, &options, &Silent)?;
+//! // The floor reflects half of what falls on it, upwards: seen from above, light comes from −y.
+//! let vectors = result.grid.get(0).expect("every vertex of a bake is received");
+//! assert!(vectors[3][1][1] < 0.0 && vectors[2][1] == [0.0; 3]);
+//! # Ok::<(), ivg_bake::BakeError>(())
+//! ```
+//!
+//! # Features
+//!
+//! `cases` adds the module `cases`: the hard cases as functions; it changes no result.
 
 #![forbid(unsafe_code)]
 

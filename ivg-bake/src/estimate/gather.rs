@@ -32,9 +32,9 @@ impl<const N: usize> Default for Mean<N> {
 impl<const N: usize> Mean<N> {
     /// Adds a sample.
     pub(crate) fn add(&mut self, sample: &[f64; N]) {
-        for n in 0..N {
-            self.sum[n] += sample[n];
-            self.squares[n] += sample[n] * sample[n];
+        for ((sum, squares), x) in self.sum.iter_mut().zip(&mut self.squares).zip(sample) {
+            *sum += x;
+            *squares += x * x;
         }
         self.count += 1;
     }

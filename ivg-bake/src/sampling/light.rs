@@ -53,7 +53,7 @@ impl AliasTable {
     /// The index that two uniform words draw. The table must not be empty.
     #[inline]
     pub(crate) fn draw(&self, column: u32, coin: u32) -> usize {
-        let column = (u64::from(column) * self.entries.len() as u64 >> 32) as usize;
+        let column = ((u64::from(column) * self.entries.len() as u64) >> 32) as usize;
         let entry = self.entries[column];
         if u64::from(coin) < entry.threshold { column } else { entry.alias as usize }
     }
