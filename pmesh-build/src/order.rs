@@ -167,7 +167,7 @@ impl Run<'_> {
     }
 
     fn coincident(&self) -> bool {
-        self.rules > Rules::Strict || self.left * COINCIDENT_SHARE <= self.total
+        self.rules == Rules::Any || self.left * COINCIDENT_SHARE <= self.total
     }
 
     /// Whether `u`, whose edges are in `ring`, may move onto `v`.

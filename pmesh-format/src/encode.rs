@@ -199,7 +199,9 @@ impl<'a> Writer<'a> {
         if self.attributes.colours {
             out.extend(mesh.wedges.colours[wedges.clone()].as_flattened());
         }
-        out.extend(faces.iter().flat_map(|(_, corners, _)| corners).flat_map(|w| w.to_le_bytes()));
+        for wedge in faces.iter().flat_map(|(_, corners, _)| corners) {
+            out.extend_from_slice(&wedge.to_le_bytes());
+        }
         out.extend(mesh.collapse[splits.clone()].iter().flat_map(|parent| parent.to_le_bytes()));
         if self.attributes.materials {
             out.extend(faces.iter().flat_map(|&(_, _, i)| mesh.materials[i].to_le_bytes()));
@@ -311,7 +313,10 @@ impl Switches {
 }
 
 fn floats<const N: usize>(out: &mut Vec<u8>, array: &[[f32; N]]) {
-    out.extend(array.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+    out.reserve(4 * N * array.len());
+    for x in array.as_flattened() {
+        out.extend_from_slice(&x.to_le_bytes());
+    }
 }
 
 #[cfg(test)]
