@@ -150,8 +150,9 @@ fn bits(vectors: &HemisphereVectors) -> Vec<u32> {
     vectors.iter().flatten().flatten().map(|component| component.to_bits()).collect()
 }
 
-/// Directions are those that packing chooses; colours are those that packing chooses within the rounding of RGB9E5: half a
-/// step is at most 1/512 of the largest component, or 2^-25 before scaling, whichever is more.
+/// Directions are those that packing chooses; colours are those that packing chooses within the rounding of RGB9E5. The mantissa
+/// of the largest component is at least 255.5 steps (it may have been rounded up to 256), so that half a step is at most 1/511 of
+/// that component, or 2^-25 before scaling where the exponent can get no smaller.
 fn compare_packed(
     original: &HemisphereVectors,
     packed: &[([f32; 3], [f32; 3]); 6],
@@ -162,7 +163,7 @@ fn compare_packed(
         let expected = pack_hemisphere(&original[hemisphere], hemisphere).expect("finite");
         assert_eq!(Some(*direction), decode_octahedral24(expected.direction));
         let largest = expected.colour.iter().copied().fold(0.0, f64::max);
-        let half_step = (largest / 512.0).max(f64::from(scale_exponent - 25).exp2());
+        let half_step = (largest / 511.0).max(f64::from(scale_exponent - 25).exp2());
         for (channel, (&colour, expected)) in colour.iter().zip(expected.colour).enumerate() {
             let error = (f64::from(colour) - expected).abs();
             assert!(
