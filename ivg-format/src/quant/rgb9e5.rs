@@ -2,7 +2,7 @@
 //!
 //! Bits 0–8 red, 9–17 green, 18–26 blue, 27–31 the exponent E; a component is `mantissa × 2^(E − 24)`
 //! (IVG-RGB-01; the layout of `EXT_texture_shared_exponent` and of the GPU format `RGB9E5`). Decoding is
-//! exact in binary32. Encoding is off by at most half a step, `2^(E − 25)`, which is at most 1/512 of the
+//! exact in binary32. Encoding is off by at most half a step, `2^(E − 25)`, which is at most 1/511 of the
 //! largest component or 2^−25, whichever is more.
 
 use super::{floor_log2, power_of_two, power_of_two_f64};

@@ -100,8 +100,9 @@ quickcheck! {
         let colour = [bits.0, bits.1, bits.2]
             .map(|b| f32::from_bits((95 + (b >> 23) % 47) << 23 | (b & 0x7F_FFFF)));
         let most = colour.iter().fold(0.0f32, |a, &b| a.max(b));
-        // Half a step is 1/512 of the largest component, or 2^-25 at the lowest exponent.
-        let bound = (most / 512.0).max(power_of_two(-25));
+        // The largest component is at least 255.5 steps, since 256 are where its rounding begins: half a step is at most
+        // 1/511 of it; or 2^-25 at the lowest exponent.
+        let bound = (most / 511.0).max(power_of_two(-25));
         colour.iter().zip(decode(encode(colour))).all(|(&a, b)| (a - b).abs() <= bound)
     }
 
