@@ -46,7 +46,7 @@ pub enum GpuError {
 /// A GPU with the pipelines of the renderer; renders any number of scenes.
 #[derive(Debug)]
 pub struct GpuRenderer {
-    adapter_name: String,
+    adapter: wgpu::AdapterInfo,
     device: wgpu::Device,
     queue: wgpu::Queue,
     pipelines: Pipelines,
@@ -59,15 +59,21 @@ impl GpuRenderer {
     ///
     /// [`GpuError::NoAdapter`] if there is none, [`GpuError::Device`] if it cannot be opened.
     pub fn new() -> Result<Self, GpuError> {
-        let (adapter_name, device, queue) = device::open()?;
+        let (adapter, device, queue) = device::open()?;
         let pipelines = device::checked(&device, || Ok(Pipelines::new(&device)))?;
-        Ok(Self { adapter_name, device, queue, pipelines })
+        Ok(Self { adapter, device, queue, pipelines })
     }
 
     /// Name of the adapter, as its driver gives it.
     #[must_use]
     pub fn adapter_name(&self) -> &str {
-        &self.adapter_name
+        &self.adapter.name
+    }
+
+    /// Whether the adapter computes on the CPU; [`render_cpu`](crate::render_cpu) is faster then.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.adapter.device_type == wgpu::DeviceType::Cpu
     }
 
     /// Renders a scene: the picture of [`render_cpu`](crate::render_cpu), up to rounding.

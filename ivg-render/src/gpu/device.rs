@@ -1,8 +1,12 @@
 use crate::GpuError;
 
 /// Opens an adapter with WebGPU's default limits and no features.
-pub(super) fn open() -> Result<(String, wgpu::Device, wgpu::Queue), GpuError> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+pub(super) fn open() -> Result<(wgpu::AdapterInfo, wgpu::Device, wgpu::Queue), GpuError> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        // Through OpenGL wgpu cannot render to four f32 a sample, which WebGPU promises.
+        backends: wgpu::Backends::PRIMARY,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
         power_preference: wgpu::PowerPreference::HighPerformance,
         ..wgpu::RequestAdapterOptions::default()
@@ -14,7 +18,7 @@ pub(super) fn open() -> Result<(String, wgpu::Device, wgpu::Queue), GpuError> {
         ..wgpu::DeviceDescriptor::default()
     }))
     .map_err(|error| GpuError::Device(error.to_string()))?;
-    Ok((adapter.get_info().name, device, queue))
+    Ok((adapter.get_info(), device, queue))
 }
 
 /// Runs `work` and turns what the device complains about into an error instead of a panic.
