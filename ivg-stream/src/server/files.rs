@@ -155,3 +155,6 @@ fn sha256_of(file: &mut std::fs::File) -> io::Result<[u8; 32]> {
 async fn blocking<T: Send + 'static>(work: impl FnOnce() -> io::Result<T> + Send + 'static) -> io::Result<T> {
     tokio::task::spawn_blocking(work).await.map_err(io::Error::other)?
 }
+
+#[cfg(test)]
+mod tests;
