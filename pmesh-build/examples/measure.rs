@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         println!(
             "{:8} order {order:.2} s ({:.1} us a vertex) to {} vertices, {} relaxed, {} forced; \
-             file {} bytes ({:+.2} %), written {write:.2} s, read {read:.2} s; error at 1 % {:.2e} of the diagonal",
+             file {} bytes ({:+.2} %), written {write:.2} s, read {read:.2} s; own error estimate at 1 % of the vertices {:.2e} of the diagonal",
             cost.name(),
             1e6 * order / report.vertices as f64,
             report.base_vertices,
