@@ -294,6 +294,8 @@ fn one_file_names_the_bvh_crate() {
         .into_iter()
         .filter(|path| std::fs::read_to_string(path).unwrap().contains("obvhs"))
         .map(|path| path.strip_prefix(&crate_folder).unwrap().to_string_lossy().into_owned())
+        // The tests of that file may compare with what it wraps.
+        .filter(|path| path != "src/accel/tests.rs")
         .collect();
     assert_eq!(naming, ["src/accel.rs"]);
 }
