@@ -43,27 +43,29 @@ pub fn run(context: &mut Context, seconds: u32) -> Result<(), String> {
         let scratch = Path::new("target/fuzz-corpus").join(target);
         std::fs::create_dir_all(context.root().join(&scratch))
             .map_err(|error| format!("cannot make {}: {error}", scratch.display()))?;
-        let dictionary = dictionary(context.root(), target);
         let start = Instant::now();
-        context.run(&cargo_fuzz(context, &run_arguments(target, dictionary.as_deref(), seconds)))?;
+        context.run(&cargo_fuzz(context, &run_arguments(context.root(), target, seconds)))?;
         println!("{target}: nothing found in {:.0} s", start.elapsed().as_secs_f64());
     }
     Ok(())
 }
 
-fn run_arguments(target: &str, dictionary: Option<&str>, seconds: u32) -> String {
-    let dictionary = dictionary.map(|path| format!(" -dict={path}")).unwrap_or_default();
+/// The first folder takes what the fuzzer adds, the others are only read. A format's dictionary and its conformance vectors
+/// serve all targets whose names begin like it.
+fn run_arguments(root: &Path, target: &str, seconds: u32) -> String {
+    let format = target.split('_').next().unwrap_or_default();
+    let mut folders = format!("target/fuzz-corpus/{target} fuzz/corpus/{target}");
+    let vectors = format!("conformance/vectors/{format}");
+    if root.join(&vectors).is_dir() {
+        folders = format!("{folders} {vectors}");
+    }
+    let dictionary = format!("fuzz/dictionaries/{format}.dict");
+    let dictionary =
+        if root.join(&dictionary).is_file() { format!(" -dict={dictionary}") } else { String::new() };
     format!(
-        "run {target} target/fuzz-corpus/{target} fuzz/corpus/{target} -- -max_total_time={seconds} -seed=1 \
-         -max_len={LONGEST_INPUT} -timeout={SLOW_INPUT} -rss_limit_mb={MEMORY} -verbosity=0{dictionary}"
+        "run {target} {folders} -- -max_total_time={seconds} -seed=1 -max_len={LONGEST_INPUT} -timeout={SLOW_INPUT} \
+         -rss_limit_mb={MEMORY} -verbosity=0{dictionary}"
     )
-}
-
-/// The dictionary of a target, if there is one: `fuzz/dictionaries/` has one for each format, named like the targets begin.
-fn dictionary(root: &Path, target: &str) -> Option<String> {
-    let format = target.split('_').next()?;
-    let path = format!("fuzz/dictionaries/{format}.dict");
-    root.join(&path).is_file().then_some(path)
 }
 
 fn cargo_fuzz(context: &Context, arguments: &str) -> Invocation {

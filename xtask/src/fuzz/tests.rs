@@ -1,4 +1,4 @@
-use super::{dictionary, release, run_arguments};
+use super::{release, run_arguments};
 
 #[test]
 fn reads_the_release_of_a_compiler() {
@@ -10,21 +10,23 @@ fn reads_the_release_of_a_compiler() {
 
 #[test]
 fn new_inputs_go_to_the_target_folder_and_not_to_the_committed_corpus() {
-    let arguments = run_arguments("ivg_decode", Some("fuzz/dictionaries/ivg.dict"), 7);
+    let root = tempfile::tempdir().unwrap();
+    let arguments = run_arguments(root.path(), "ivg_decode", 7);
     // libFuzzer writes to the first folder and only reads the others.
     assert!(arguments.starts_with("run ivg_decode target/fuzz-corpus/ivg_decode fuzz/corpus/ivg_decode -- "));
-    assert!(
-        arguments.contains("-max_total_time=7 ") && arguments.ends_with(" -dict=fuzz/dictionaries/ivg.dict")
-    );
-    assert!(!run_arguments("mesh_build", None, 7).contains("-dict"));
+    assert!(arguments.contains("-max_total_time=7 ") && !arguments.contains("-dict"));
 }
 
 #[test]
-fn a_dictionary_is_shared_by_the_targets_of_a_format() {
+fn dictionary_and_vectors_are_shared_by_the_targets_of_a_format() {
     let root = tempfile::tempdir().unwrap();
-    let folder = root.path().join("fuzz/dictionaries");
-    std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("ivg.dict"), "").unwrap();
-    assert_eq!(dictionary(root.path(), "ivg_chunks").as_deref(), Some("fuzz/dictionaries/ivg.dict"));
-    assert_eq!(dictionary(root.path(), "mesh_build"), None);
+    for folder in ["fuzz/dictionaries", "conformance/vectors/ivg"] {
+        std::fs::create_dir_all(root.path().join(folder)).unwrap();
+    }
+    std::fs::write(root.path().join("fuzz/dictionaries/ivg.dict"), "").unwrap();
+    let arguments = run_arguments(root.path(), "ivg_chunks", 1);
+    assert!(arguments.contains("fuzz/corpus/ivg_chunks conformance/vectors/ivg -- "), "{arguments}");
+    assert!(arguments.ends_with(" -dict=fuzz/dictionaries/ivg.dict"), "{arguments}");
+    let arguments = run_arguments(root.path(), "mesh_build", 1);
+    assert!(!arguments.contains("vectors") && !arguments.contains("-dict"), "{arguments}");
 }
