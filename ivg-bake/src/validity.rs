@@ -7,8 +7,10 @@
 //! the most volume at all, then the first.
 //!
 //! **Validity.** A vertex is invalid (0) if no light reaches it: of 128 random paths from it, with a light sampled at
-//! the vertex and at every reflection, fewer than two find light. Parity or back faces would have to trust that meshes
-//! are closed and wound one way; light knows nothing of that. It is also invalid if its region is smaller than
+//! the vertex and at every reflection, fewer than two find light. Parity or back faces alone would have to trust that
+//! meshes are closed and wound one way; light knows nothing of that. Together they tell more: a vertex that sees nearly
+//! nothing but backs of faces and finds light on fewer than a quarter of its paths lies inside a model whose mesh has
+//! holes. It is also invalid if its region is smaller than
 //! [`FEWEST_SUB_CELLS`]. Otherwise validity is 255, less where the region is under an eighth of the cell (the share of a
 //! vertex in the corner of a room), in proportion. Where no light reaches any vertex, darkness is the truth, and the
 //! vertices that see anything are valid.
@@ -18,6 +20,7 @@
 use glam::Vec3;
 
 use crate::BakeError;
+use crate::accel::Hit;
 use crate::dual::Boxes;
 use crate::overlap::{closest_point, triangle_meets_box};
 use crate::region::{FEWEST_SUB_CELLS, Mask, Regions, SUB, SUB_CELLS};
@@ -37,6 +40,16 @@ const REACH_PATHS: u32 = 128;
 
 /// Paths that must find it.
 const REACH_FOUND: u32 = 2;
+
+/// Paths that must find it from a vertex that sees the backs of faces all around: a quarter. The inside of a scanned model
+/// gets a little light through the holes in its mesh; a room whose faces were wound outwards gets as much as any room.
+const REACH_FOUND_ENCLOSED: u32 = REACH_PATHS / 4;
+
+/// Share of the first flights that must end at the back of a face for a vertex to be taken for enclosed.
+const ENCLOSED: f64 = 0.9;
+
+/// First flights that are looked at before a vertex is taken to lie in the open.
+const FEWEST_LOOKS: u32 = 16;
 
 /// Reflections of such a path.
 const REACH_BOUNCES: u32 = 8;
@@ -177,27 +190,43 @@ impl Stage<'_> {
         best.copied().unwrap_or(View { eye: middle, mask: Some(Mask::NONE), lit: false })
     }
 
-    /// Whether light, direct or reflected, reaches a point.
+    /// Whether light, direct or reflected, reaches a point in the open.
     fn reached(&self, point: Vec3, vertex: usize) -> bool {
-        let mut found = 0;
+        let (mut found, mut behind) = (0, 0);
         for path in 0..REACH_PATHS {
             let item = vertex as u64 * u64::from(REACH_PATHS) + u64::from(path);
-            found += u32::from(self.path_finds_light(point, &Stream::new(REACH_SEED, item)));
-            if found == REACH_FOUND {
+            let stream = Stream::new(REACH_SEED, item);
+            let u = stream.uniforms(0, Purpose::Reach);
+            let direction = hemisphere::sphere([u[0], u[1]]);
+            let first = self.accel.closest_hit(point, direction, f32::MAX);
+            behind += u32::from(first.is_some_and(|hit| self.is_behind(&hit, direction)));
+            found += u32::from(self.path_finds_light(point, direction, first, &stream));
+            // Most vertices are settled by their first paths.
+            let looks = path + 1;
+            if found >= REACH_FOUND
+                && looks >= FEWEST_LOOKS
+                && f64::from(behind) < ENCLOSED * f64::from(looks)
+            {
                 return true;
             }
         }
-        false
+        let enclosed = f64::from(behind) >= ENCLOSED * f64::from(REACH_PATHS);
+        found >= if enclosed { REACH_FOUND_ENCLOSED } else { REACH_FOUND }
     }
 
-    fn path_finds_light(&self, point: Vec3, stream: &Stream) -> bool {
+    /// Whether a ray meets a surface from behind.
+    fn is_behind(&self, hit: &Hit, direction: Vec3) -> bool {
+        self.surfaces.point(hit.triangle, hit.weights).normal.dot(direction) > 0.0
+    }
+
+    /// Whether a path from `point`, whose first flight goes along `direction` and ends at `first`, finds light.
+    fn path_finds_light(&self, point: Vec3, direction: Vec3, first: Option<Hit>, stream: &Stream) -> bool {
         if self.lit_directly(point, None, stream, 0) {
             return true;
         }
-        let u = stream.uniforms(0, Purpose::Reach);
-        let (mut origin, mut direction) = (point, hemisphere::sphere([u[0], u[1]]));
+        let (mut direction, mut next) = (direction, first);
         for bounce in 1..=REACH_BOUNCES {
-            let Some(hit) = self.accel.closest_hit(origin, direction, f32::MAX) else {
+            let Some(hit) = next else {
                 return self.emitters.sky().max_element() > 0.0;
             };
             let surface = self.surfaces.point(hit.triangle, hit.weights);
@@ -208,12 +237,13 @@ impl Stage<'_> {
                 return false;
             }
             let side = surface.facing(-direction);
-            origin = surface.origin(side);
+            let origin = surface.origin(side);
             if self.lit_directly(origin, Some(side), stream, bounce) {
                 return true;
             }
             let u = stream.uniforms(bounce, Purpose::Reach);
             direction = hemisphere::cosine(side, [u[0], u[1]]);
+            next = self.accel.closest_hit(origin, direction, f32::MAX);
         }
         false
     }

@@ -1,4 +1,5 @@
 use glam::{DVec3, Vec3};
+use ivg_scene::LightKind;
 
 use super::{Surroundings, directions, distances};
 use crate::Silent;
@@ -91,4 +92,53 @@ fn there_are_26_directions_axes_first() {
     for (n, d) in all.iter().enumerate() {
         assert!(!all[..n].contains(d));
     }
+}
+
+/// Validity at the middle of a cube of 0.4 m, its faces wound outwards, with a hole of `hole` m in its top.
+fn in_a_cube(hole: f32, builder: SceneBuilder) -> u8 {
+    let mut builder = builder;
+    let wall = builder.material(0.7, 0.0, true);
+    let (low, high) = (Vec3::splat(0.3), Vec3::splat(0.7));
+    let (x, y, z) = (Vec3::X * 0.4, Vec3::Y * 0.4, Vec3::Z * 0.4);
+    for (corner, u, v) in [(low, y, x), (low, z, y), (low, x, z), (high, -y, -z), (high, -x, -y)] {
+        builder.quad(corner, u, v, wall);
+    }
+    // The top, in two strips beside the hole and two at its ends.
+    let (near, far) = (0.2 - 0.5 * hole, 0.2 + 0.5 * hole);
+    let strip = |builder: &mut SceneBuilder, x0: f32, x1: f32, z0: f32, z1: f32| {
+        let corner = low + y + Vec3::new(x0, 0.0, z0);
+        builder.quad(corner, Vec3::Z * (z1 - z0), Vec3::X * (x1 - x0), wall);
+    };
+    strip(&mut builder, 0.0, near, 0.0, 0.4);
+    strip(&mut builder, far, 0.4, 0.0, 0.4);
+    if hole > 0.0 {
+        strip(&mut builder, near, far, 0.0, near);
+        strip(&mut builder, near, far, far, 0.4);
+    }
+    let (scene, flat) = builder.build();
+    let effects = Effects { textures: false, sky: scene.sky.is_some() };
+    let bounds = Some((DVec3::ZERO, DVec3::ONE));
+    let stage = Stage::new(&scene, &flat, effects, bounds).unwrap();
+    let metre = stage.space.scale();
+    let cells = Boxes {
+        low: stage.space.to_bake(DVec3::splat(-0.25)).to_array(),
+        step: [(0.5 * metre) as f32; 3],
+        count: [3; 3],
+    };
+    let workers = Workers { threads: 2, monitor: &Silent, total_photons: 0 };
+    Surroundings::new(&stage, &cells, &workers).unwrap().validity[cells.index([1, 1, 1])]
+}
+
+#[test]
+fn inside_a_model_with_a_hole_is_inside() {
+    let mut outdoors = SceneBuilder::default();
+    outdoors.sky(1.0);
+    assert_eq!(in_a_cube(0.1, outdoors), 0, "a little light through a hole does not make it outside");
+}
+
+#[test]
+fn a_room_wound_outwards_is_a_room() {
+    let mut lit = SceneBuilder::default();
+    lit.light(LightKind::Point { position: DVec3::new(0.4, 0.6, 0.5), intensity: Vec3::ONE });
+    assert_ne!(in_a_cube(0.0, lit), 0, "all light, although it sees nothing but backs");
 }
