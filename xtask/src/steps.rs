@@ -64,9 +64,10 @@ fn all(selection: &Selection) -> Vec<Step> {
                 .environment("RUSTDOCFLAGS", "-Dwarnings"),
         )],
     ));
+    let link = "--locked --manifest-path conformance/nostd-link/Cargo.toml";
     steps.push(step(
         "link without std",
-        [cargo("build --locked --manifest-path conformance/nostd-link/Cargo.toml")],
+        [cargo(&format!("build {link}")), cargo(&format!("clippy {link} -- -D warnings"))],
     ));
     if full {
         // A feature only adds items, so that this is all that the default features test, and more.
