@@ -66,3 +66,8 @@ pub use metrics::{IrradianceError, relative_rmse};
 pub use reconstruct::{Reconstruction, TANGENTIAL_SHARE, reconstruct, reconstruct_signed, three_vector};
 pub use spatial::SpatialFilter;
 pub use texture::{FLAG_USABLE, INVALID_TEXTURE_WEIGHT, TEXTURE_COUNT};
+
+/// The example of the repository's README, compiled with this crate's doc tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
