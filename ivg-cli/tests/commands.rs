@@ -4,7 +4,7 @@ mod support;
 
 use std::fs;
 
-use support::{Workplace, ROOM_MTL, ROOM_OBJ, text};
+use support::{ROOM_MTL, ROOM_OBJ, Workplace, text};
 
 /// A bake that takes a moment.
 const SMALL: [&str; 4] = ["--grid", "5x4x3", "--photons", "3000"];
@@ -132,7 +132,8 @@ fn a_failure_is_one_line_and_leaves_no_file() {
     let message = text(&output.stderr);
     assert_eq!(message.lines().count(), 1, "{message}");
     assert!(message.contains("--lights"), "{message}");
-    let left: Vec<_> = fs::read_dir(place.path()).expect("the folder").flatten().map(|e| e.file_name()).collect();
+    let left: Vec<_> =
+        fs::read_dir(place.path()).expect("the folder").flatten().map(|e| e.file_name()).collect();
     assert_eq!(left.len(), 2, "{left:?}");
 
     let output = place.run(&["bake", "dark.obj", "-o", "light.ivg", "--grid", "0x1x1"]);
@@ -146,7 +147,8 @@ fn plan_names_what_a_scene_needs() {
     let report: serde_json::Value = serde_json::from_str(&report).expect("JSON");
     let need = |name: &str| {
         let effects = report["effects"].as_array().expect("a list");
-        effects.iter().find(|e| e["effect"] == name).unwrap_or_else(|| panic!("{name}: {report}"))["need"].clone()
+        effects.iter().find(|e| e["effect"] == name).unwrap_or_else(|| panic!("{name}: {report}"))["need"]
+            .clone()
     };
     assert_eq!(need("diffuse indirect light"), "needed");
     assert_eq!(need("textures"), "not needed");
