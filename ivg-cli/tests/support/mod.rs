@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
 /// A room of 1 m with an open front and a light below its ceiling; metres.
-pub const ROOM_OBJ: &str = "mtllib room.mtl
+pub(crate) const ROOM_OBJ: &str = "mtllib room.mtl
 v 0 0 0
 v 1 0 0
 v 1 0 1
@@ -30,7 +30,7 @@ f 9 10 11 12
 ";
 
 /// The materials of the room; the light radiates 10 W/(m² sr) downwards.
-pub const ROOM_MTL: &str = "newmtl white
+pub(crate) const ROOM_MTL: &str = "newmtl white
 Kd 0.7 0.7 0.7
 newmtl red
 Kd 0.6 0.1 0.1
@@ -40,52 +40,52 @@ Ke 10 10 10
 ";
 
 /// A folder that goes away with the test.
-pub struct Workplace(tempfile::TempDir);
+pub(crate) struct Workplace(tempfile::TempDir);
 
 /// `ivg serve` in the background; stopped when dropped.
-pub struct Server {
+pub(crate) struct Server {
     child: Child,
-    pub url: String,
+    pub(crate) url: String,
 }
 
 impl Workplace {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(tempfile::tempdir().expect("a temporary folder"))
     }
 
-    pub fn with_room() -> Self {
+    pub(crate) fn with_room() -> Self {
         let place = Self::new();
         place.write("room.obj", ROOM_OBJ.as_bytes());
         place.write("room.mtl", ROOM_MTL.as_bytes());
         place
     }
 
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.0.path()
     }
 
-    pub fn write(&self, name: &str, bytes: &[u8]) {
+    pub(crate) fn write(&self, name: &str, bytes: &[u8]) {
         std::fs::write(self.file(name), bytes).expect("a writable folder");
     }
 
-    pub fn read(&self, name: &str) -> Vec<u8> {
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.file(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
     /// Runs the command to its end.
-    pub fn run(&self, arguments: &[&str]) -> Output {
+    pub(crate) fn run(&self, arguments: &[&str]) -> Output {
         self.command(arguments).output().expect("the command starts")
     }
 
     /// Runs the command, which must succeed; gives what it printed.
-    pub fn ok(&self, arguments: &[&str]) -> Vec<u8> {
+    pub(crate) fn ok(&self, arguments: &[&str]) -> Vec<u8> {
         let output = self.run(arguments);
         assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
         output.stdout
     }
 
     /// Serves a folder on a free port.
-    pub fn serve(&self, directory: &str) -> Server {
+    pub(crate) fn serve(&self, directory: &str) -> Server {
         let mut child = self
             .command(&["serve", directory, "--listen", "127.0.0.1:0"])
             .stdout(Stdio::piped())
@@ -119,6 +119,6 @@ impl Drop for Server {
 }
 
 /// Bytes as text.
-pub fn text(bytes: &[u8]) -> String {
+pub(crate) fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
