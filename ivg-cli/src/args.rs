@@ -60,7 +60,7 @@ pub(crate) struct BakeSettings {
     /// Number of grid vertices along x, y and z.
     #[arg(long, value_name = "NXxNYxNZ", default_value = "16x16x16")]
     pub(crate) grid: GridSize,
-    /// First and last vertex of the grid [m]; default: the scene's bounds and a margin.
+    /// First and last vertex of the grid, in metres; default: the scene's bounds and a margin.
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     pub(crate) bounds: Option<Bounds>,
     /// Number of photons traced.
@@ -118,7 +118,7 @@ pub(crate) struct DemoArguments {
     /// Which renderer draws the pictures.
     #[arg(long, value_enum, default_value_t = RendererArgument::Auto)]
     pub(crate) renderer: RendererArgument,
-    /// Size of each picture [pixels].
+    /// Size of each picture, in pixels.
     #[arg(long, value_name = "WxH", default_value = "480x480")]
     pub(crate) size: PictureSize,
     /// Number of photons traced.
@@ -232,7 +232,7 @@ pub(crate) struct FileArguments {
 pub(crate) struct SampleArguments {
     /// An .ivg file.
     pub(crate) file: PathBuf,
-    /// CSV file with the header x,y,z,nx,ny,nz: positions [m] and unit normals; - reads stdin.
+    /// CSV file with the header x,y,z,nx,ny,nz: positions in metres and unit normals; - reads stdin.
     #[arg(long, value_name = "POINTS.csv")]
     pub(crate) at: PathBuf,
     /// How irradiance for a normal is made from the vectors.
@@ -267,7 +267,8 @@ pub(crate) enum FilterArgument {
 pub(crate) struct ExtractArguments {
     /// An .ivg or .pmesh file.
     pub(crate) file: PathBuf,
-    /// Output: .npy for a grid, .ply or .obj for a mesh.
+    /// Output. For a grid .npy: f32 of shape (nz, ny, nx, 6 hemispheres +x -x +y -y +z -z, 3 colours, 3 components), W/m²;
+    /// for a mesh .ply or .obj.
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: PathBuf,
     /// Use the first N bytes of the file only: what a client knows then.
@@ -321,10 +322,10 @@ pub(crate) struct RenderArguments {
     /// Grid to use with a scene file.
     #[arg(long, value_name = "FILE.ivg")]
     pub(crate) ivg: Option<PathBuf>,
-    /// Camera: eye and target [m] as X,Y,Z,X,Y,Z [default: the scene's, or one that frames it].
+    /// Camera: eye and target in metres as X,Y,Z,X,Y,Z; default: the scene's, or one that frames it.
     #[arg(long, value_name = "EYE,TARGET", allow_hyphen_values = true)]
     pub(crate) camera: Option<Bounds>,
-    /// Size of the picture [pixels].
+    /// Size of the picture, in pixels.
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     pub(crate) size: PictureSize,
     /// Brightness: factor on radiance before the tone curve [default: from the scene].
