@@ -20,6 +20,9 @@ pub const END_PAYLOAD: u64 = 8;
 
 const HEADER_BYTES: usize = 8;
 
+/// Where in a record its generation is.
+const GENERATION_AT: u64 = 4;
+
 /// A record whose checksum fits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Record<'a> {
@@ -102,7 +105,7 @@ pub fn read_record(
 ///
 /// # Errors
 ///
-/// As [`read_record`]; and malformed if the generation is not 0 or the length differs.
+/// As [`read_record`]; and malformed, at the field at fault, if the generation is not 0 or the length differs.
 pub fn read_end(
     input: &[u8],
     offset: ByteOffset,
@@ -112,9 +115,12 @@ pub fn read_end(
     match read_record(input, offset, END_RECORD, END_PAYLOAD, content)? {
         Step::NeedMore(more) => Ok(Step::NeedMore(more)),
         Step::Consumed(used, record) => {
-            if record.generation != 0 || record.payload != file_bytes.to_le_bytes() {
-                let at = record.payload_offset();
-                return Err(Error::new(codes::END_MISMATCH, at, Part::Record(END_RECORD)));
+            let fail = |at| Err(Error::new(codes::END_MISMATCH, at, Part::Record(END_RECORD)));
+            if record.generation != 0 {
+                return fail(ByteOffset(offset.0.saturating_add(GENERATION_AT)));
+            }
+            if record.payload != file_bytes.to_le_bytes() {
+                return fail(record.payload_offset());
             }
             Ok(Step::Consumed(used, ()))
         }

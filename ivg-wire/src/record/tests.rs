@@ -80,10 +80,11 @@ fn the_end_record_names_the_length_of_the_file() {
     assert_eq!(bytes.len() as u64, record_len(END_PAYLOAD).unwrap());
     assert_eq!(read_end(&bytes, ByteOffset(0), 1234, CONTENT), Ok(Step::Consumed(20, ())));
     let error = read_end(&bytes, ByteOffset(0), 1235, CONTENT).unwrap_err();
-    assert_eq!(error.code(), codes::END_MISMATCH.number());
+    assert_eq!((error.code(), error.offset()), (codes::END_MISMATCH.number(), ByteOffset(8)));
     let mut updated = Vec::new();
     write_record(&mut updated, END_RECORD, 1, &1234u64.to_le_bytes(), CONTENT);
-    assert!(read_end(&updated, ByteOffset(0), 1234, CONTENT).is_err(), "generation 1");
+    let error = read_end(&updated, ByteOffset(0), 1234, CONTENT).unwrap_err();
+    assert_eq!((error.code(), error.offset()), (codes::END_MISMATCH.number(), ByteOffset(4)), "generation 1");
 }
 
 quickcheck! {
