@@ -156,12 +156,13 @@ impl Header {
             return Err(fail(codes::BUNDLE_COUNT, at::BUNDLE_COUNT));
         }
         let blocks = self.lattice.vertex_count().div_ceil(VALIDITY_BLOCK);
-        if self.validity_records != 0 && u64::from(self.validity_records) != blocks {
+        // Their ids follow FIRST_VALIDITY and end before that of the end record.
+        let fits = u64::from(self.validity_records) == blocks && self.validity_records < FIRST_VALIDITY;
+        if self.validity_records != 0 && !fits {
             return Err(fail(codes::VALIDITY_COUNT, at::VALIDITY_RECORDS));
         }
         let largest = self.largest_record().unwrap_or(u64::MAX);
-        if largest > u64::from(Maximum::RECORD_BYTES) || self.validity_records >= END_RECORD - FIRST_VALIDITY
-        {
+        if largest > u64::from(Maximum::RECORD_BYTES) {
             return Err(fail(codes::RECORD_TOO_LARGE, at::VERTICES_PER_SLICE));
         }
         if self.lattice.vertex_count() > limits.vertices {
@@ -285,9 +286,8 @@ impl Header {
             _ => 0,
         };
         if bundles > 0 {
-            // All bundles to which every slice gives its full share are equally long. After them come at most
-            // five more: one in which the outer slices run out, and, since an inner slice has at most four
-            // vertices more, four in which only the inner ones are left.
+            // All bundles to which every slice gives its full share are equally long. An inner slice has at most
+            // four vertices more than an outer one, so that at most four bundles come after them.
             let full = u64::from(bundles).min(self.slices().full_bundles());
             start = start.checked_add(full.checked_mul(len(RecordId::Bundle(1))?)?)?;
             for k in u32::try_from(full).ok()?..bundles {

@@ -49,6 +49,23 @@ fn each_header_field_has_its_error() {
 }
 
 #[test]
+fn ids_of_validity_records_stay_below_that_of_the_end_record() {
+    let declared = |dims: [u16; 3], records: u32, bundles: u32| {
+        edited(&full(), |file| {
+            file[56..62].copy_from_slice(&dims.map(u16::to_le_bytes).concat());
+            file[116..120].copy_from_slice(&1u32.to_le_bytes());
+            file[128..132].copy_from_slice(&bundles.to_le_bytes());
+            file[132..136].copy_from_slice(&records.to_le_bytes());
+        })
+    };
+    // 4096 vertices a record: these lattices need 2³¹ − 1 and 2³¹ of them. The limit on vertices is judged later.
+    let (most, beyond) = ([2235, 62_661, 62_808], [2441, 59_990, 60_068]);
+    refused(&declared(most, 0x7FFF_FFFF, 2235 * 62_661), codes::LIMIT_VERTICES, 56);
+    refused(&declared(beyond, 0x8000_0000, 2441 * 59_990), codes::VALIDITY_COUNT, 132);
+    refused(&declared(beyond, 0, 2441 * 59_990), codes::LIMIT_VERTICES, 56);
+}
+
+#[test]
 fn free_fields_are_free() {
     for file in
         [patched(120, &[0xAB; 4]), patched(136, &[1]), patched(16, &[0xFF; 4]), patched(114, &[112, 0])]
