@@ -16,7 +16,7 @@ pub mod codes {
         POSITIONS_UNKNOWN = 355, Unsupported, "PMESH-HDR-04",
             "this encoding of positions needs another reader";
         /// The origin is not finite.
-        ORIGIN = 356, Invalid, "PMESH-HDR-06", "the origin is not finite";
+        MESH_ORIGIN = 356, Invalid, "PMESH-HDR-06", "the origin is not finite";
         /// The bounding box is not finite, or inside out.
         BOUNDS = 357, Invalid, "PMESH-HDR-07", "the bounding box is not finite or inside out";
         /// The first chunk is not the packet directory.

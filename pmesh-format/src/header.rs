@@ -142,7 +142,7 @@ impl Header {
             _ => return Err(fail(codes::POSITIONS_UNKNOWN, at::POSITIONS)),
         }
         if !header.origin.iter().all(|x| x.is_finite()) {
-            return Err(fail(codes::ORIGIN, at::ORIGIN));
+            return Err(fail(codes::MESH_ORIGIN, at::ORIGIN));
         }
         let [low, high] = header.bounds;
         if !low.iter().all(|x| x.is_finite()) {

@@ -61,7 +61,7 @@ fn every_defect_of_header_and_directory_has_its_code_and_its_place() {
         ("POSITIONS_UNKNOWN", 77, |p| p.specific[21] = 4),
         ("RESERVED", 78, |p| p.specific[22] |= 32),
         ("RESERVED", 78, |p| p.specific[23] |= 1),
-        ("ORIGIN", 80, |p| p.specific[24..32].copy_from_slice(&f64::NAN.to_le_bytes())),
+        ("MESH_ORIGIN", 80, |p| p.specific[24..32].copy_from_slice(&f64::NAN.to_le_bytes())),
         ("BOUNDS", 104, |p| p.specific[48..52].copy_from_slice(&f32::NEG_INFINITY.to_le_bytes())),
         ("BOUNDS", 116, |p| p.specific[60..64].copy_from_slice(&f32::NAN.to_le_bytes())),
         ("BOUNDS", 116, |p| p.specific[60..64].copy_from_slice(&(-5.0f32).to_le_bytes())),

@@ -175,7 +175,7 @@ fn headers(file: &[u8]) -> Vec<Refused> {
         (
             o,
             "origin",
-            mesh::ORIGIN,
+            mesh::MESH_ORIGIN,
             edited(at::ORIGIN + 8, &f64::INFINITY.to_le_bytes()),
             "an origin at infinity",
         ),
