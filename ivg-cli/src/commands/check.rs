@@ -15,10 +15,7 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
         FileKind::Grid => check_grid(&bytes),
         FileKind::Mesh => check_mesh(&bytes),
     };
-    let (verdict, parts) = match &result {
-        Ok(parts) => (Verdict::Ok, Some(*parts)),
-        Err(error) => (error.verdict(), None),
-    };
+    let verdict = result.as_ref().err().map_or(Verdict::Ok, Error::verdict);
     if arguments.json {
         let report = json!({
             "file": arguments.file,
@@ -29,34 +26,59 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
             "clause": result.as_ref().err().map(Error::clause),
             "offset": result.as_ref().err().map(|error| error.offset().0),
             "message": result.as_ref().err().map(ToString::to_string),
+            "warnings": result.as_ref().ok().map(|found| &found.warnings),
         });
         files::print(&format!("{report}\n"));
     } else {
         let name = arguments.file.display();
-        match (&result, parts) {
-            (Err(error), _) => files::print(&format!("{name}: {verdict}: {error} [{}]\n", error.code())),
-            (Ok(_), parts) => files::print(&format!(
-                "{name}: {verdict}: {} bytes, {} parts, every checksum and rule holds\n",
-                bytes.len(),
-                parts.unwrap_or(0),
-            )),
+        match &result {
+            Err(error) => files::print(&format!("{name}: {verdict}: {error} [{}]\n", error.code())),
+            Ok(found) => {
+                files::print(&format!(
+                    "{name}: {verdict}: {} bytes, {} parts, every checksum and reader rule holds\n",
+                    bytes.len(),
+                    found.parts,
+                ));
+                for warning in &found.warnings {
+                    files::print(&format!("{name}: warning: {warning}\n"));
+                }
+            }
         }
     }
     Ok(ExitCode::from(verdict.exit_code()))
 }
 
-/// Number of chunks and records of a grid file, all checked.
-fn check_grid(bytes: &[u8]) -> Result<usize, Error> {
-    let mut parts = 0;
-    ivg_format::decode_all(bytes, &ivg_format::Limits::default(), |_| parts += 1)?;
-    Ok(parts)
+/// What a valid file holds.
+#[derive(Default)]
+struct Found {
+    /// Chunks and records.
+    parts: usize,
+    /// Broken rules that concern writers only and do not change the verdict (COM-VERD-01).
+    warnings: Vec<String>,
 }
 
-/// Number of chunks and packets of a mesh file, all checked, and every packet replayed.
-fn check_mesh(bytes: &[u8]) -> Result<usize, Error> {
+fn check_grid(bytes: &[u8]) -> Result<Found, Error> {
+    let mut found = Found::default();
+    ivg_format::decode_all(bytes, &ivg_format::Limits::default(), |event| {
+        found.parts += 1;
+        if let ivg_format::Event::Corners(bundle) | ivg_format::Event::Bundle(bundle) = event
+            && let Some((vertex, hemisphere)) = bundle.outside_hemisphere()
+        {
+            let axis = ["+x", "-x", "+y", "-y", "+z", "-z"][hemisphere];
+            found.warnings.push(format!(
+                "record {:#x}: the {axis} direction of vertex {vertex} is not inside its hemisphere (IVG-PACK-03)",
+                bundle.id().stored(),
+            ));
+        }
+    })?;
+    Ok(found)
+}
+
+/// Checks every packet by replaying it.
+fn check_mesh(bytes: &[u8]) -> Result<Found, Error> {
     let limits = pmesh_format::Limits::default();
     pmesh_format::check(bytes, &limits)?;
-    let mut parts = 0;
-    pmesh_format::decode_all(bytes, &limits, |_| parts += 1)?;
-    Ok(parts)
+    let mut found = Found::default();
+    pmesh_format::decode_all(bytes, &limits, |_| found.parts += 1)?;
+    Ok(found)
 }

@@ -149,7 +149,7 @@ fn mesh(path: &Path, bytes: &[u8]) -> Result<Description, Failure> {
         let step = decoder.push(&bytes[offset as usize..]).map_err(refused)?;
         let Step::Consumed(used, event) = step else { break };
         let what = match event {
-            pmesh_format::Event::Header(_) => "header".to_owned(),
+            pmesh_format::Event::Header(_) => "header, directory".to_owned(),
             pmesh_format::Event::Chunk(chunk) => format!("chunk {}", chunk.kind),
             _ => break,
         };
