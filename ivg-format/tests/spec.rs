@@ -145,6 +145,13 @@ fn fields_follow_each_other_without_gaps() {
 }
 
 #[test]
+fn no_two_errors_of_any_format_share_a_number_or_a_name() {
+    let rows = rows("errors", "error");
+    let distinct = |key: &str| rows.iter().map(|row| row[key].to_string()).collect::<BTreeSet<_>>().len();
+    assert_eq!((distinct("code"), distinct("name")), (rows.len(), rows.len()));
+}
+
+#[test]
 fn every_error_code_equals_its_row() {
     let rows = of_format(rows("errors", "error"), "ivg");
     assert_eq!(rows.len(), ivg_format::codes::ALL.len());
