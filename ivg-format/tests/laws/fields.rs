@@ -75,6 +75,15 @@ fn free_fields_are_free() {
 }
 
 #[test]
+fn the_step_of_a_single_vertex_is_zero_of_either_sign() {
+    let flat = plain([1, 3, 2], Encoding::PackedOct24, 1);
+    let step = |x: f64| edited(&flat, |file| file[88..96].copy_from_slice(&x.to_le_bytes()));
+    assert_eq!(one_shot(&step(-0.0)).1, None);
+    refused(&step(-1.0), codes::STEP, 88);
+    refused(&step(1.0), codes::STEP, 88);
+}
+
+#[test]
 fn reserved_is_unsupported_and_forbidden_is_invalid() {
     let verdict = |file: &[u8]| one_shot(file).1.unwrap().verdict();
     assert_eq!(verdict(&patched(62, &[2, 0])), Verdict::Unsupported);
@@ -86,8 +95,9 @@ fn reserved_is_unsupported_and_forbidden_is_invalid() {
 }
 
 #[test]
-fn another_major_version_is_unsupported_a_newer_minor_is_read() {
+fn another_major_version_is_unsupported_any_minor_is_read() {
     refused(&patched(8, &[1, 0]), common::MAJOR_VERSION, 8);
+    assert_eq!(one_shot(&patched(10, &[0, 0])).1, None);
     assert_eq!(one_shot(&patched(10, &[2, 0])).1, None);
     assert_eq!(one_shot(&patched(10, &[0xFF, 0xFF])).1, None);
 }

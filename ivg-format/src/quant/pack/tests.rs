@@ -81,3 +81,9 @@ quickcheck! {
         }))
     }
 }
+
+#[test]
+fn a_zero_has_the_sign_of_the_product() {
+    let [red, ..] = unpack([-0.5, 0.5, 0.0], [0.0; 3]);
+    assert_eq!(red.map(f32::to_bits), [(-0.0f32).to_bits(), 0, 0], "IVG-PACK-05");
+}
