@@ -117,6 +117,14 @@ fn an_ancillary_chunk_of_unknown_type_is_skipped() {
 }
 
 #[test]
+fn an_error_of_zero_may_have_either_sign() {
+    let mut parts = Parts::of(&file());
+    let last = parts.directory().len() - 4;
+    parts.directory()[last..].copy_from_slice(&(-0.0f32).to_le_bytes());
+    assert_eq!(check(&parts.build(), &Limits::default()), Ok(()));
+}
+
+#[test]
 fn limits_are_the_callers() {
     let file = file();
     let header = header_of(&file);
