@@ -24,6 +24,11 @@ pub enum BakeError {
     /// The bounds or vertex counts do not make a lattice.
     #[error("the grid is not possible: {0}")]
     Lattice(#[from] LatticeError),
+    /// The bounds given reach far beyond the scene.
+    #[error(
+        "the bounds reach more than 10,000 times the scene's diagonal from it; give --bounds in metres, near the scene"
+    )]
+    FarBounds,
     /// The grid cannot be held.
     #[error("the grid cannot be held: {0}")]
     Grid(#[from] GridError),

@@ -120,12 +120,16 @@ pub fn dims_for(min: DVec3, max: DVec3, longest: u16) -> [u16; 3] {
         .map(|e| if step > 0.0 { (e / step).round() as u16 + 1 } else { 1 }.clamp(2, longest.max(2)))
 }
 
+/// How far from the middle of the scene bounds may reach, in its diagonals: beyond, the scene itself is smaller than the
+/// rounding of f32 coordinates allows the tracer to resolve well.
+const FARTHEST: f64 = 1e4;
+
 impl BakeOptions {
     /// Where the vertices will be.
     ///
     /// # Errors
     ///
-    /// [`BakeError::Lattice`].
+    /// [`BakeError::Lattice`] or [`BakeError::FarBounds`].
     pub fn lattice(&self, flat: &FlatScene) -> Result<Lattice, BakeError> {
         let (min, max) = self.first_and_last(flat)?;
         Ok(Lattice::new(self.dims, min.to_array(), max.to_array())?)
@@ -134,7 +138,16 @@ impl BakeOptions {
     /// The bounds given, or the automatic ones.
     pub(crate) fn first_and_last(&self, flat: &FlatScene) -> Result<(DVec3, DVec3), BakeError> {
         match self.bounds {
-            Some(bounds) => Ok(bounds),
+            Some((min, max)) => {
+                let Some((low, high)) = bounds(flat) else { return Ok((min, max)) };
+                let (middle, reach) = (low.midpoint(high), FARTHEST * (high - low).length());
+                let near = |p: DVec3| (p - middle).abs().max_element() <= reach;
+                // A scene that is a single point has no size to compare with; NaN is the lattice's to refuse.
+                if reach > 0.0 && min.is_finite() && max.is_finite() && !(near(min) && near(max)) {
+                    return Err(BakeError::FarBounds);
+                }
+                Ok((min, max))
+            }
             None => Ok(automatic_bounds(flat, self.dims)?),
         }
     }

@@ -297,7 +297,7 @@ pub(crate) enum RendererArgument {
 pub(crate) enum IndirectArgument {
     /// From the irradiance vector grid.
     Grid,
-    /// Path traced: slow, the reference. Scene files only.
+    /// Path traced: slow, the reference.
     Path,
     /// No indirect light.
     None,

@@ -11,6 +11,7 @@ use ivg_scene::{EffectPlan, FlatScene, Need, Scene};
 
 use crate::args::{BakeSettings, EncodingArgument, EstimatorArgument, SceneArguments};
 use crate::failure::Failure;
+use crate::files::shown;
 use crate::progress::BakeBar;
 
 /// A scene with everything a bake or a picture needs to know about it.
@@ -30,7 +31,7 @@ impl LoadedScene {
         let options = ImportOptions { lights: lights.map(Into::into) };
         let scene = import::load(path, &options).map_err(Failure::new)?;
         for warning in &scene.warnings {
-            eprintln!("ivg: warning: {warning}");
+            eprintln!("ivg: warning: {}", shown(warning));
         }
         Self::from_scene(scene)
     }
@@ -71,10 +72,10 @@ pub(crate) fn plan(
 /// Prints to stderr what the scene asks for and this release does not simulate.
 pub(crate) fn report_unsupported(scene: &Scene, plan: &EffectPlan) {
     for effect in plan.effects.iter().filter(|effect| effect.need == Need::Unsupported) {
-        eprintln!("ivg: not simulated: {}: {}", effect.effect.name(), effect.reason);
+        eprintln!("ivg: not simulated: {}: {}", effect.effect.name(), shown(&effect.reason));
     }
     for unsupported in &scene.unsupported {
-        eprintln!("ivg: not supported: {}: {}", unsupported.object, unsupported.what);
+        eprintln!("ivg: not supported: {}: {}", shown(&unsupported.object), shown(&unsupported.what));
     }
 }
 

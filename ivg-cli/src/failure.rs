@@ -37,7 +37,7 @@ impl Failure {
 
 /// Errors are one line on stderr, whatever a library's message looks like.
 fn one_line(message: &str) -> String {
-    message.split_whitespace().collect::<Vec<_>>().join(" ")
+    crate::files::shown(&message.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
 impl fmt::Display for Failure {

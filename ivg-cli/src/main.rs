@@ -27,7 +27,16 @@ use crate::args::{Arguments, Command};
 use crate::failure::Failure;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        // Help and version are asked for; everything else is an error, and errors are one line.
+        Err(error) if !error.use_stderr() => error.exit(),
+        Err(error) => {
+            let failure = Failure::usage(first_paragraph(&error.to_string()));
+            eprintln!("ivg: {failure} (see ivg --help)");
+            return failure.exit_code();
+        }
+    };
     match run(arguments.command) {
         Ok(code) => code,
         Err(failure) => {
@@ -52,4 +61,10 @@ fn run(command: Command) -> Result<ExitCode, Failure> {
         Command::Serve(arguments) => commands::serve::run(&arguments),
         Command::Fetch(arguments) => commands::fetch::run(&arguments),
     }
+}
+
+/// What clap says is wrong, without its usage text.
+fn first_paragraph(message: &str) -> &str {
+    let message = message.strip_prefix("error: ").unwrap_or(message);
+    message.split("\n\n").next().unwrap_or(message)
 }

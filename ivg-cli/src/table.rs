@@ -1,7 +1,11 @@
 //! Plain text tables for people.
 
+use crate::files::shown;
+
 /// Lays out rows in columns; the first row is the heading. The columns named in `numbers` are set flush right below it.
 pub(crate) fn layout(rows: &[Vec<String>], numbers: &[usize]) -> String {
+    let rows: Vec<Vec<String>> =
+        rows.iter().map(|row| row.iter().map(|cell| shown(cell)).collect()).collect();
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
         rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)

@@ -17,6 +17,11 @@ pub enum GridError {
     Lattice(ivg_format::LatticeError),
     /// The bytes are no sound .ivg file, or end too early.
     Format(ivg_format::Error),
+    /// There is not enough memory for a value at each vertex.
+    Memory {
+        /// Vertices of the lattice.
+        vertices: usize,
+    },
     /// A record belongs to a grid with another lattice.
     OtherLattice,
     /// An array does not have one element a vertex.
@@ -35,9 +40,11 @@ impl fmt::Display for GridError {
         match self {
             Self::TooManyVertices { vertices, limit } => write!(
                 f,
-                "the lattice has {vertices} vertices, but at most {limit} are allowed; raise the limit or use a \
-                 coarser grid"
+                "the lattice has {vertices} vertices, but at most {limit} are allowed; use a coarser grid"
             ),
+            Self::Memory { vertices } => {
+                write!(f, "not enough memory for a lattice of {vertices} vertices; use a coarser grid")
+            }
             Self::Lattice(error) => error.fmt(f),
             Self::Format(error) => error.fmt(f),
             Self::OtherLattice => f.write_str(

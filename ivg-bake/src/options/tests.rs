@@ -1,6 +1,7 @@
 use glam::{DVec3, Vec3};
 
 use super::{BakeOptions, Estimator, automatic_bounds, dims_for};
+use crate::BakeError;
 use crate::cases::SceneBuilder;
 
 #[test]
@@ -46,4 +47,21 @@ fn estimators_are_found_by_their_names() {
     }
     assert_eq!(Estimator::from_name("gather"), None);
     assert_eq!(Estimator::default(), Estimator::ALL[0]);
+}
+
+#[test]
+fn bounds_far_beyond_the_scene_are_refused_at_once() {
+    let mut builder = SceneBuilder::default();
+    let grey = builder.material(0.5, 0.0, true);
+    builder.cuboid(Vec3::ZERO, Vec3::ONE, grey, false);
+    let (_, flat) = builder.build();
+    let lattice = |max: f64| {
+        let bounds = Some((DVec3::ZERO, DVec3::new(max, 1.0, 1.0)));
+        BakeOptions { bounds, ..BakeOptions::default() }.lattice(&flat)
+    };
+    assert!(lattice(1e4).is_ok());
+    for far in [2e4, 1e30, 1e300] {
+        assert_eq!(lattice(far), Err(BakeError::FarBounds), "{far}");
+    }
+    assert!(matches!(lattice(f64::INFINITY), Err(BakeError::Lattice(_))));
 }

@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::{files, table};
 
 pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
+    files::require_extension(&arguments.out, &["ivg"])?;
     let loaded = LoadedScene::open(&arguments.scene)?;
     let baked = baking::bake(&loaded, &arguments.bake)?;
     files::write(&arguments.out, &baked.file)?;

@@ -10,7 +10,7 @@ use crate::kind::FileKind;
 
 pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
     let bytes = files::read(&arguments.file)?;
-    let kind = FileKind::of(&arguments.file, &bytes)?;
+    let kind = FileKind::of(&arguments.file, &bytes);
     let result = match kind {
         FileKind::Grid => check_grid(&bytes),
         FileKind::Mesh => check_mesh(&bytes),

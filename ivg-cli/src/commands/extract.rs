@@ -1,4 +1,3 @@
-use std::path::Path;
 use std::process::ExitCode;
 
 use ivg_grid::{FillOptions, IrradianceGrid};
@@ -12,7 +11,7 @@ use crate::{files, npy, reading};
 
 pub(crate) fn run(arguments: &ExtractArguments) -> Result<ExitCode, Failure> {
     let mut bytes = files::read(&arguments.file)?;
-    let kind = FileKind::of(&arguments.file, &bytes)?;
+    let kind = FileKind::of(&arguments.file, &bytes);
     if let Some(limit) = arguments.bytes {
         bytes.truncate(usize::try_from(limit).unwrap_or(usize::MAX));
     }
@@ -26,7 +25,7 @@ fn grid(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
     if arguments.level.is_some() {
         return Err(Failure::usage("--level is for .pmesh files; a grid is cut with --bytes"));
     }
-    require_extension(&arguments.out, &["npy"])?;
+    files::require_extension(&arguments.out, &["npy"])?;
     let (header, mut grid, used) = reading::grid(&arguments.file, bytes)?;
     let known = grid.received_count();
     if arguments.fill {
@@ -34,10 +33,13 @@ fn grid(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
     }
     let [nx, ny, nz] = header.lattice.dims.map(usize::from);
     let values = Values { grid: &grid, keep_all: arguments.fill, next: 0 };
-    files::write(&arguments.out, &npy::encode(&[nz, ny, nx, 6, 3, 3], values))?;
-    let verb = if arguments.fill { "known, the rest filled" } else { "known, the rest NaN" };
+    let array =
+        npy::encode(&[nz, ny, nx, 6, 3, 3], values).map_err(|error| Failure::file(&arguments.out, error))?;
+    files::write(&arguments.out, &array)?;
+    let invalid = grid.vertex_count() - grid.valid_count();
+    let gaps = if arguments.fill { "filled" } else { "NaN" };
     files::print(&format!(
-        "{}: {nz} x {ny} x {nx} x 6 x 3 x 3 f32, {known} of {} vertices {verb}; {used} bytes used\n",
+        "{}: {nz} x {ny} x {nx} x 6 x 3 x 3 f32, {known} of {} vertices received, {invalid} invalid; gaps are {gaps}; {used} bytes used\n",
         arguments.out.display(),
         grid.vertex_count(),
     ));
@@ -77,7 +79,7 @@ fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
     if arguments.fill {
         return Err(Failure::usage("--fill is for .ivg files"));
     }
-    let extension = require_extension(&arguments.out, &["ply", "obj"])?;
+    let extension = files::require_extension(&arguments.out, &["ply", "obj"])?;
     let (mut replay, used) = reading::mesh(&arguments.file, bytes)?;
     let range = replay.levels().ok_or_else(|| {
         Failure::file(&arguments.file, "the first packet has not arrived whole; there is no level yet")
@@ -110,15 +112,4 @@ fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
         mesh.triangles.len(),
     ));
     Ok(ExitCode::SUCCESS)
-}
-
-fn require_extension<'a>(path: &'a Path, wanted: &[&str]) -> Result<&'a str, Failure> {
-    match path.extension().and_then(|extension| extension.to_str()) {
-        Some(extension) if wanted.contains(&extension) => Ok(extension),
-        _ => Err(Failure::usage(format_args!(
-            "{}: the output of this file must end in .{}",
-            path.display(),
-            wanted.join(" or .")
-        ))),
-    }
 }

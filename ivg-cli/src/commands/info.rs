@@ -25,7 +25,7 @@ struct Part {
 
 pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
     let bytes = files::read(&arguments.file)?;
-    let description = match FileKind::of(&arguments.file, &bytes)? {
+    let description = match FileKind::of(&arguments.file, &bytes) {
         FileKind::Grid => grid(&arguments.file, &bytes)?,
         FileKind::Mesh => mesh(&arguments.file, &bytes)?,
     };
@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::SUCCESS);
     }
     for (name, value) in &description.fields {
-        files::print(&format!("{name:20} {}\n", plain(value)));
+        files::print(&format!("{name:20} {}\n", files::shown(&plain(value))));
     }
     let mut rows = vec![["part", "offset", "bytes"].map(str::to_owned).to_vec()];
     rows.extend(

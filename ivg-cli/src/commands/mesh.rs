@@ -15,6 +15,7 @@ use crate::{files, table};
 pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
     // Each has one value in this release; the match keeps the names and the encoder's options together.
     let (PositionsArgument::F32, ModeArgument::Raw) = (arguments.positions, arguments.mode);
+    files::require_extension(&arguments.out, &["pmesh"])?;
     let start = Instant::now();
     let scene = import::load(&arguments.mesh, &ImportOptions::default()).map_err(Failure::new)?;
     scene.check().map_err(Failure::new)?;

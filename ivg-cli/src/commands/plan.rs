@@ -65,7 +65,11 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
         }
     }
     for item in &loaded.scene.unsupported {
-        files::print(&format!("not supported: {}: {}\n", item.object, item.what));
+        files::print(&format!(
+            "not supported: {}: {}\n",
+            files::shown(&item.object),
+            files::shown(&item.what)
+        ));
     }
     Ok(ExitCode::SUCCESS)
 }

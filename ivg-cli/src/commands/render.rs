@@ -29,6 +29,7 @@ struct Source {
 }
 
 pub(crate) fn run(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
+    files::require_extension(&arguments.out, &["png"])?;
     let source = open(arguments)?;
     let scene = &source.loaded.scene;
     let camera = camera(arguments, &source.loaded);

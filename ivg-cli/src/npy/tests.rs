@@ -2,7 +2,8 @@ use super::encode;
 
 #[test]
 fn header_is_aligned_and_values_follow() {
-    let bytes = encode(&[2, 3], [0.0, 1.0, 2.0, 3.0, 4.0, f32::NAN].into_iter());
+    let bytes =
+        encode(&[2, 3], [0.0, 1.0, 2.0, 3.0, 4.0, f32::NAN].into_iter()).expect("memory for six numbers");
     assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
     let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
     assert_eq!((10 + length) % 64, 0);
