@@ -51,13 +51,13 @@ impl IrradianceGrid {
     /// As [`IrradianceGrid::new`]. Grids of 2³² vertices or more are refused whatever the limit.
     pub fn with_limit(lattice: Lattice, max_vertices: u64) -> Result<Self, GridError> {
         let count = checked_vertices(&lattice, max_vertices)?;
-        // Asked for first: running out of memory in `vec!` would end the process.
-        Vec::<HemisphereVectors>::new()
-            .try_reserve_exact(count)
-            .map_err(|_| GridError::Memory { vertices: count })?;
+        // Not `vec!`: there, running out of memory ends the process.
+        let mut vectors = Vec::new();
+        vectors.try_reserve_exact(count).map_err(|_| GridError::Memory { vertices: count })?;
+        vectors.resize(count, [[[0.0; 3]; 3]; 6]);
         Ok(Self {
             lattice,
-            vectors: vec![[[[0.0; 3]; 3]; 6]; count],
+            vectors,
             received: BitSet::new(count),
             validity: vec![VALIDITY_FREE; count],
             blocked_edges: vec![0; count],
