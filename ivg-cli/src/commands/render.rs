@@ -78,14 +78,12 @@ fn open(arguments: &RenderArguments) -> Result<Source, Failure> {
     }
     let loaded = LoadedScene::load(path, arguments.lights.as_deref())?;
     if !wants_grid {
-        let plan = plan::analyse(&loaded.scene, &loaded.flat, &PlanOptions::default());
-        baking::report_unsupported(&loaded.scene, &plan);
+        let plan = planned(&loaded);
         return Ok(Source { loaded, plan, grid: None });
     }
     if let Some(file) = &arguments.ivg {
         let (header, grid, _) = reading::grid(file, &files::read(file)?)?;
-        let plan = plan::analyse(&loaded.scene, &loaded.flat, &PlanOptions::default());
-        baking::report_unsupported(&loaded.scene, &plan);
+        let plan = planned(&loaded);
         return Ok(Source {
             loaded,
             plan,
@@ -95,6 +93,13 @@ fn open(arguments: &RenderArguments) -> Result<Source, Failure> {
     let baked = baking::bake(&loaded, &arguments.bake)?;
     // Straight from the baker, nothing is packed: all six vectors are as they were.
     Ok(Source { loaded, plan: baked.plan, grid: Some((baked.grid, Reconstruction::SixVector)) })
+}
+
+/// What a picture needs, without a pilot run: nothing is baked. Reports what is not simulated.
+fn planned(loaded: &LoadedScene) -> EffectPlan {
+    let plan = plan::analyse(&loaded.scene, &loaded.flat, &PlanOptions::default());
+    baking::report_unsupported(&loaded.scene, &plan);
+    plan
 }
 
 /// A packed scene: complete, with the grid that was packed with it.
@@ -107,8 +112,7 @@ fn packed(
         return Err(Failure::usage("--lights and --ivg are for scene files; a packed scene has its own"));
     }
     let loaded = LoadedScene::from_scene(scene)?;
-    let plan = plan::analyse(&loaded.scene, &loaded.flat, &PlanOptions::default());
-    baking::report_unsupported(&loaded.scene, &plan);
+    let plan = planned(&loaded);
     let grid = grid.filter(|_| arguments.indirect == IndirectArgument::Grid);
     Ok(Source { loaded, plan, grid: grid.map(|grid| (grid.clone(), Reconstruction::ThreeVector)) })
 }
