@@ -11,6 +11,10 @@ use ivg_wire::{ByteOffset, Error, Part};
 /// Irradiance vectors `[hemisphere +x −x +y −y +z −z][rgb][xyz]` \[W/m², or lux\], in binary32.
 pub type HemisphereVectors = [[[f32; 3]; 3]; 6];
 
+/// Indirect radiance as real spherical harmonics to degree 2, `[rgb][coefficient]` \[W/(m² sr)\], in binary32: the
+/// coefficients of the orthonormal basis in the order (0,0), (1,−1), (1,0), (1,1), (2,−2) … (2,2) (IVG-SH-01).
+pub type RadianceHarmonics = [[f32; 9]; 3];
+
 /// Directions in each hemisphere of a vertex.
 const HEMISPHERES: usize = 6;
 

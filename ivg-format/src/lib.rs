@@ -59,7 +59,7 @@ pub mod quant;
 mod validity;
 mod wire;
 
-pub use bundle::{Bundle, HemisphereVectors, Vertices};
+pub use bundle::{Bundle, HemisphereVectors, RadianceHarmonics, Vertices};
 pub use code::codes;
 pub use decode::{BufferedDecoder, Decoder, Event, decode_all, decode_record};
 pub use encode::{EncodeError, EncodeOptions, GridSource, encode};
