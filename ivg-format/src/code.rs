@@ -44,6 +44,8 @@ pub mod codes {
         LIGHTS = 410, Invalid, "IVG-LITE-02", "the list of lights is not well formed";
         /// The metadata cannot be read.
         METADATA = 411, Invalid, "IVG-META-02", "the metadata are not lines of key=value in UTF-8";
+        /// The forbidden ratio code −128.
+        RATIO_CODE = 412, Invalid, "IVG-SH-04", "a ratio code holds the forbidden value -128";
         /// The lattice has more vertices than the caller allows.
         LIMIT_VERTICES = 605, Limit, "IVG-LIM-01", "the lattice has more vertices than the limit";
     }

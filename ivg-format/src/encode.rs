@@ -1,13 +1,14 @@
 //! Writing: a dense grid becomes a file. Deterministic: the same source and options give the same bytes.
 
-use crate::bundle::HemisphereVectors;
+use crate::codec::harmonics::RATIOS;
 use crate::encoding::{Encoding, Order, Units};
 use crate::header::{Header, RecordId, SCALE_EXPONENTS, VALIDITY_BLOCK};
 use crate::lattice::{Lattice, LatticeError};
 use crate::metadata::{self, BakedLight, LIGHTS, METADATA};
 use crate::quant::pack::{PackedHemisphere, pack_hemisphere};
-use crate::quant::{floor_log2, power_of_two_f64, rgb9e5};
+use crate::quant::{floor_log2, power_of_two_f64, ratio, rgb9e5};
 use crate::validity;
+use crate::values::{HemisphereVectors, Quantity, RadianceHarmonics, Values};
 use crate::wire::{FORMAT, HEADER_BYTES};
 use alloc::vec::Vec;
 use core::fmt;
@@ -18,8 +19,9 @@ use ivg_wire::{ContentId, Maximum, record_len, seal, write_chunk, write_end, wri
 pub struct GridSource<'a> {
     /// Where the vertices are.
     pub lattice: Lattice,
-    /// Irradiance vectors of every vertex in the order of its linear index \[W/m², or lux\].
-    pub vectors: &'a [HemisphereVectors],
+    /// Values of every vertex in the order of its linear index: irradiance vectors \[W/m², or lux\] or radiance harmonics
+    /// \[W/(m² sr), or cd/m²\], as the encoding stores them.
+    pub values: Values<'a>,
     /// Validity of every vertex: 0 inside geometry … 255 all free. `None` counts as all free.
     pub validity: Option<&'a [u8]>,
     /// Blocked edges of every vertex: bit 0, 1, 2 set where geometry cuts the way to the neighbour in
@@ -34,8 +36,9 @@ pub struct GridSource<'a> {
 impl<'a> GridSource<'a> {
     /// A grid without validity section, lights and metadata.
     #[must_use]
-    pub const fn new(lattice: Lattice, vectors: &'a [HemisphereVectors]) -> Self {
-        Self { lattice, vectors, validity: None, blocked_edges: None, lights: &[], meta: &[] }
+    pub fn new(lattice: Lattice, values: impl Into<Values<'a>>) -> Self {
+        let values = values.into();
+        Self { lattice, values, validity: None, blocked_edges: None, lights: &[], meta: &[] }
     }
 }
 
@@ -89,6 +92,23 @@ pub enum EncodeError {
         /// The lattice's vertices.
         expected: u64,
     },
+    /// The encoding stores another quantity than the source holds.
+    Quantity {
+        /// The encoding asked for.
+        encoding: Encoding,
+        /// What the source holds.
+        found: Quantity,
+    },
+    /// A coefficient of the radiance is NaN or infinite.
+    RadianceNotFinite {
+        /// The vertex's coordinates.
+        vertex: [u16; 3],
+    },
+    /// The mean radiance of a vertex is too large for the encoding, whatever the scale exponent.
+    RadianceTooLarge {
+        /// The vertex's coordinates.
+        vertex: [u16; 3],
+    },
     /// A component of an irradiance vector is NaN or infinite.
     NotFinite {
         /// The vertex's coordinates.
@@ -134,13 +154,10 @@ pub enum EncodeError {
 /// [`EncodeError`] names what cannot be written and where.
 pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8>, EncodeError> {
     check_source(source)?;
-    let packed = match options.encoding {
-        Encoding::PackedOct24 => Some(pack(source)?),
-        Encoding::VectorsF32 => None,
-    };
+    let prepared = Prepared::new(source, options.encoding)?;
     let mut chunks = Vec::new();
     write_chunks(&mut chunks, source)?;
-    let header = layout(source, options, packed.as_ref().map_or(0, |p| p.scale_exponent), chunks.len())?;
+    let header = layout(source, options, prepared.scale_exponent(), chunks.len())?;
 
     let mut out =
         Vec::with_capacity(usize::try_from(header.file_bytes).map_err(|_| EncodeError::BundleSize)?);
@@ -151,10 +168,10 @@ pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8
         payload.clear();
         match id {
             RecordId::Corners => {
-                write_vertices(&mut payload, source, packed.as_ref(), header.lattice.corners());
+                prepared.write(&mut payload, header.lattice.corners());
             }
             RecordId::Bundle(k) => {
-                write_vertices(&mut payload, source, packed.as_ref(), header.bundle_vertices(k));
+                prepared.write(&mut payload, header.bundle_vertices(k));
             }
             RecordId::Validity(j) => {
                 let first = (u64::from(j) * VALIDITY_BLOCK) as usize;
@@ -195,22 +212,13 @@ fn check_source(source: &GridSource<'_>) -> Result<(), EncodeError> {
     lattice.check().map_err(EncodeError::Lattice)?;
     let expected = lattice.vertex_count();
     let counts = [
-        ("vectors", Some(source.vectors.len())),
+        ("values", Some(source.values.len())),
         ("validity", source.validity.map(<[u8]>::len)),
         ("blocked_edges", source.blocked_edges.map(<[u8]>::len)),
     ];
     for (what, found) in counts {
         if let Some(found) = found.filter(|&found| found as u64 != expected) {
             return Err(EncodeError::Count { what, found, expected });
-        }
-    }
-    for (index, vectors) in (0..).zip(source.vectors) {
-        let hemisphere = vectors.iter().position(|v| !v.iter().flatten().all(|c| c.is_finite()));
-        if let Some(hemisphere) = hemisphere {
-            return Err(EncodeError::NotFinite {
-                vertex: lattice.coords(index),
-                hemisphere: hemisphere as u8,
-            });
         }
     }
     for (index, &edges) in (0..).zip(source.blocked_edges.unwrap_or(&[])) {
@@ -286,19 +294,81 @@ fn layout(
     Ok(header)
 }
 
-/// Directions and colours of all vertices, and the exponent that brings the largest colour just below the
-/// largest number of RGB9E5.
-struct Packed {
-    hemispheres: Vec<[PackedHemisphere; 6]>,
-    scale_exponent: i16,
+/// The values of all vertices on their way to bytes.
+enum Prepared<'a> {
+    /// Directions and colours.
+    Packed { hemispheres: Vec<[PackedHemisphere; 6]>, scale_exponent: i16 },
+    /// Numbers as they are.
+    Plain(&'a [HemisphereVectors]),
+    /// Means, and codes of the ratios to them.
+    Harmonics { vertices: Vec<([f64; 3], [i8; RATIOS])>, scale_exponent: i16 },
 }
 
-fn pack(source: &GridSource<'_>) -> Result<Packed, EncodeError> {
-    let lattice = &source.lattice;
-    let mut hemispheres = Vec::with_capacity(source.vectors.len());
+impl<'a> Prepared<'a> {
+    fn new(source: &GridSource<'a>, encoding: Encoding) -> Result<Self, EncodeError> {
+        match (encoding, source.values) {
+            (Encoding::PackedOct24, Values::Vectors(vectors)) => pack(&source.lattice, vectors),
+            (Encoding::VectorsF32, Values::Vectors(vectors)) => {
+                for (index, vertex) in (0..).zip(vectors) {
+                    if let Some(h) = vertex.iter().position(|v| !v.iter().flatten().all(|c| c.is_finite())) {
+                        return Err(EncodeError::NotFinite {
+                            vertex: source.lattice.coords(index),
+                            hemisphere: h as u8,
+                        });
+                    }
+                }
+                Ok(Self::Plain(vectors))
+            }
+            (Encoding::Sh2, Values::Radiance(radiance)) => relate(&source.lattice, radiance),
+            (encoding, values) => Err(EncodeError::Quantity { encoding, found: values.quantity() }),
+        }
+    }
+
+    fn scale_exponent(&self) -> i16 {
+        match self {
+            Self::Packed { scale_exponent, .. } | Self::Harmonics { scale_exponent, .. } => *scale_exponent,
+            Self::Plain(_) => 0,
+        }
+    }
+
+    /// Appends the payload of some vertices.
+    fn write(&self, out: &mut Vec<u8>, vertices: impl Iterator<Item = u64> + Clone) {
+        let scale = power_of_two_f64(-i32::from(self.scale_exponent()));
+        match self {
+            Self::Packed { hemispheres, .. } => {
+                for h in vertices.clone().flat_map(|v| &hemispheres[v as usize]) {
+                    out.extend_from_slice(&rgb9e5::encode_f64(h.colour.map(|c| c * scale)).to_le_bytes());
+                }
+                for h in vertices.flat_map(|v| &hemispheres[v as usize]) {
+                    out.extend_from_slice(&h.direction.to_le_bytes()[..3]);
+                }
+            }
+            Self::Plain(vectors) => {
+                for component in vertices.flat_map(|v| vectors[v as usize].iter().flatten().flatten()) {
+                    out.extend_from_slice(&component.to_le_bytes());
+                }
+            }
+            Self::Harmonics { vertices: all, .. } => {
+                for (mean, _) in vertices.clone().map(|v| &all[v as usize]) {
+                    out.extend_from_slice(&rgb9e5::encode_f64(mean.map(|c| c * scale)).to_le_bytes());
+                }
+                for code in vertices.flat_map(|v| &all[v as usize].1) {
+                    out.push(code.cast_unsigned());
+                }
+            }
+        }
+    }
+}
+
+/// The largest colour component that RGB9E5 holds with any scale exponent.
+fn largest_colour() -> f64 {
+    f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(*SCALE_EXPONENTS.end()))
+}
+
+fn pack<'a>(lattice: &Lattice, vectors: &[HemisphereVectors]) -> Result<Prepared<'a>, EncodeError> {
+    let mut hemispheres = Vec::with_capacity(vectors.len());
     let mut largest = 0.0f64;
-    let bound = f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(*SCALE_EXPONENTS.end()));
-    for (index, vectors) in (0..).zip(source.vectors) {
+    for (index, vectors) in (0..).zip(vectors) {
         let mut vertex = [PackedHemisphere { direction: 0, colour: [0.0; 3] }; 6];
         for (hemisphere, (packed, vectors)) in vertex.iter_mut().zip(vectors).enumerate() {
             let at = || (lattice.coords(index), hemisphere as u8);
@@ -307,7 +377,7 @@ fn pack(source: &GridSource<'_>) -> Result<Packed, EncodeError> {
                 return Err(EncodeError::NotFinite { vertex, hemisphere });
             };
             let most = found.colour.iter().fold(0.0, |most: f64, &c| most.max(c));
-            if most > bound {
+            if most > largest_colour() {
                 let (vertex, hemisphere) = at();
                 return Err(EncodeError::TooLarge { vertex, hemisphere });
             }
@@ -316,7 +386,43 @@ fn pack(source: &GridSource<'_>) -> Result<Packed, EncodeError> {
         }
         hemispheres.push(vertex);
     }
-    Ok(Packed { hemispheres, scale_exponent: scale_exponent(largest) })
+    Ok(Prepared::Packed { hemispheres, scale_exponent: scale_exponent(largest) })
+}
+
+/// Means and codes of the ratios to them (IVG-SH-06).
+fn relate<'a>(lattice: &Lattice, radiance: &[RadianceHarmonics]) -> Result<Prepared<'a>, EncodeError> {
+    let mut vertices = Vec::with_capacity(radiance.len());
+    let mut largest = 0.0f64;
+    for (index, channels) in (0..).zip(radiance) {
+        let vertex = || lattice.coords(index);
+        if !channels.iter().flatten().all(|c| c.is_finite()) {
+            return Err(EncodeError::RadianceNotFinite { vertex: vertex() });
+        }
+        let mean = channels.map(|coefficients| f64::from(coefficients[0]).max(0.0));
+        let most = mean.iter().fold(0.0, |most: f64, &c| most.max(c));
+        if most > largest_colour() {
+            return Err(EncodeError::RadianceTooLarge { vertex: vertex() });
+        }
+        largest = largest.max(most);
+        vertices.push((mean, channels));
+    }
+    // The ratios are taken to the means as they will be decoded, so that their rounding is not passed on.
+    let scale_exponent = scale_exponent(largest);
+    let scale = power_of_two_f64(-i32::from(scale_exponent));
+    let vertices = vertices.into_iter().map(|(mean, channels)| {
+        let decoded = rgb9e5::decode_scaled(rgb9e5::encode_f64(mean.map(|c| c * scale)), scale_exponent);
+        let mut codes = [0; RATIOS];
+        let coefficients = channels.iter().zip(decoded).flat_map(|(coefficients, mean)| {
+            coefficients[1..].iter().zip(1..).map(move |(&c, which)| (c, which, mean))
+        });
+        for (code, (coefficient, which, mean)) in codes.iter_mut().zip(coefficients) {
+            if mean > 0.0 {
+                *code = ratio::encode(f64::from(coefficient) / f64::from(mean), which);
+            }
+        }
+        (mean, codes)
+    });
+    Ok(Prepared::Harmonics { vertices: vertices.collect(), scale_exponent })
 }
 
 /// The smallest exponent e in range with `largest / 2^e` ≤ 65408; 0 for a grid without light (IVG-PACK-06).
@@ -333,30 +439,6 @@ fn scale_exponent(largest: f64) -> i16 {
     exponent.min(high) as i16
 }
 
-fn write_vertices(
-    out: &mut Vec<u8>,
-    source: &GridSource<'_>,
-    packed: Option<&Packed>,
-    vertices: impl Iterator<Item = u64> + Clone,
-) {
-    match packed {
-        Some(Packed { hemispheres, scale_exponent }) => {
-            let scale = power_of_two_f64(-i32::from(*scale_exponent));
-            for h in vertices.clone().flat_map(|v| &hemispheres[v as usize]) {
-                out.extend_from_slice(&rgb9e5::encode_f64(h.colour.map(|c| c * scale)).to_le_bytes());
-            }
-            for h in vertices.flat_map(|v| &hemispheres[v as usize]) {
-                out.extend_from_slice(&h.direction.to_le_bytes()[..3]);
-            }
-        }
-        None => {
-            for component in vertices.flat_map(|v| source.vectors[v as usize].iter().flatten().flatten()) {
-                out.extend_from_slice(&component.to_le_bytes());
-            }
-        }
-    }
-}
-
 impl fmt::Display for EncodeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let hemisphere_name =
@@ -365,6 +447,19 @@ impl fmt::Display for EncodeError {
             Self::Lattice(error) => error.fmt(f),
             Self::Count { what, found, expected } => {
                 write!(f, "{what} has {found} entries, but the lattice has {expected} vertices")
+            }
+            Self::Quantity { encoding, found } => write!(
+                f,
+                "{} stores {}, but the grid holds {}",
+                encoding.name(),
+                encoding.quantity().name(),
+                found.name()
+            ),
+            Self::RadianceNotFinite { vertex: [i, j, k] } => {
+                write!(f, "vertex ({i}, {j}, {k}) has a radiance coefficient that is not finite")
+            }
+            Self::RadianceTooLarge { vertex: [i, j, k] } => {
+                write!(f, "vertex ({i}, {j}, {k}) has a radiance that is too large for the encoding")
             }
             Self::NotFinite { vertex: [i, j, k], hemisphere } => write!(
                 f,

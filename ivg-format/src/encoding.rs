@@ -1,6 +1,8 @@
 //! The registries of encodings, orders and units. Source: `spec/tables/registry.toml`.
 
-/// How the irradiance vectors of a vertex are stored: the registry entries that this crate has.
+use crate::values::Quantity;
+
+/// How the values of a vertex are stored: the registry entries that this crate has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Encoding {
@@ -9,11 +11,14 @@ pub enum Encoding {
     PackedOct24,
     /// 54 binary32 numbers `[hemisphere 6][rgb 3][xyz 3]`: 216 bytes, exact.
     VectorsF32,
+    /// Spherical harmonics of the radiance to degree 2: RGB9E5 for the mean, 8 bits for the ratio of each other
+    /// coefficient to it: 28 bytes, the most accurate for its size.
+    Sh2,
 }
 
 impl Encoding {
     /// Every encoding that this crate has, in the order of their ids.
-    pub const ALL: &'static [Self] = &[Self::PackedOct24, Self::VectorsF32];
+    pub const ALL: &'static [Self] = &[Self::PackedOct24, Self::VectorsF32, Self::Sh2];
 
     /// The number in the registry, as stored in the header.
     #[must_use]
@@ -21,6 +26,7 @@ impl Encoding {
         match self {
             Self::PackedOct24 => 1,
             Self::VectorsF32 => 6,
+            Self::Sh2 => 7,
         }
     }
 
@@ -36,6 +42,7 @@ impl Encoding {
         match self {
             Self::PackedOct24 => "packed-oct24",
             Self::VectorsF32 => "vectors-f32",
+            Self::Sh2 => "sh2-28",
         }
     }
 
@@ -51,6 +58,16 @@ impl Encoding {
         match self {
             Self::PackedOct24 => 42,
             Self::VectorsF32 => 216,
+            Self::Sh2 => 28,
+        }
+    }
+
+    /// What the numbers of a vertex are.
+    #[must_use]
+    pub const fn quantity(self) -> Quantity {
+        match self {
+            Self::PackedOct24 | Self::VectorsF32 => Quantity::Vectors,
+            Self::Sh2 => Quantity::Radiance,
         }
     }
 }

@@ -25,8 +25,8 @@
 //! let mut received = 0;
 //! decode_all(&file, &Limits::default(), |event| {
 //!     if let Event::Corners(bundle) | Event::Bundle(bundle) = event {
-//!         for (_vertex, vectors) in bundle.iter() {
-//!             assert_eq!(vectors[2][0], [0.0, 1.5, 0.0]);
+//!         for n in 0..bundle.len() {
+//!             assert_eq!(bundle.vectors(n)[2][0], [0.0, 1.5, 0.0]);
 //!             received += 1;
 //!         }
 //!     }
@@ -47,6 +47,7 @@ extern crate alloc;
 
 mod bundle;
 mod code;
+mod codec;
 mod decode;
 mod encode;
 mod encoding;
@@ -57,9 +58,10 @@ mod metadata;
 mod order;
 pub mod quant;
 mod validity;
+mod values;
 mod wire;
 
-pub use bundle::{Bundle, HemisphereVectors, RadianceHarmonics, Vertices};
+pub use bundle::{Bundle, Vertices};
 pub use code::codes;
 pub use decode::{BufferedDecoder, Decoder, Event, decode_all, decode_record};
 pub use encode::{EncodeError, EncodeOptions, GridSource, encode};
@@ -74,4 +76,5 @@ pub use limits::Limits;
 pub use metadata::{BakedLight, LIGHTS, METADATA, lights, metadata};
 pub use order::BundleVertices;
 pub use validity::ValidityBlock;
+pub use values::{HemisphereVectors, Quantity, RadianceHarmonics, Values, VertexValues};
 pub use wire::{HEADER_BYTES, MAJOR};

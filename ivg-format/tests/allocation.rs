@@ -3,8 +3,8 @@
 //! One test, because the counting allocator counts for the whole process.
 
 use ivg_format::{
-    BufferedDecoder, Decoder, EncodeOptions, Encoding, GridSource, Lattice, Limits, Step, Verdict,
-    decode_all, encode,
+    BufferedDecoder, Decoder, EncodeOptions, Encoding, GridSource, Lattice, Limits, Quantity, Step, Values,
+    Verdict, VertexValues, decode_all, encode,
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -27,10 +27,15 @@ fn file(dims: [u16; 3], encoding: Encoding) -> Vec<u8> {
     let mut vertex = [[[0.0; 3]; 3]; 6];
     // Along the axis, so that the packed encoding is exact too.
     vertex[3] = [[0.0, -1.0, 0.0]; 3];
-    let vectors = vec![vertex; lattice.vertex_count() as usize];
-    let validity = vec![200; vectors.len()];
+    let count = lattice.vertex_count() as usize;
+    let (vectors, radiance) = (vec![vertex; count], vec![[[1.0; 9]; 3]; count]);
+    let values: Values<'_> = match encoding.quantity() {
+        Quantity::Vectors => (&vectors).into(),
+        Quantity::Radiance => (&radiance).into(),
+    };
+    let validity = vec![200; count];
     let meta = [("generator", "allocation")];
-    let source = GridSource { validity: Some(&validity), meta: &meta, ..GridSource::new(lattice, &vectors) };
+    let source = GridSource { validity: Some(&validity), meta: &meta, ..GridSource::new(lattice, values) };
     encode(&source, &EncodeOptions { encoding, vertices_per_slice: 8, ..EncodeOptions::new() }).unwrap()
 }
 
@@ -55,7 +60,13 @@ fn reading_resident_bytes_allocates_nothing() {
             let mut sum = 0.0;
             decode_all(&file, &Limits::default(), |event| {
                 if let ivg_format::Event::Bundle(bundle) = event {
-                    sum += bundle.iter().map(|(_, vectors)| vectors[3][0][1]).sum::<f32>();
+                    sum += bundle
+                        .iter()
+                        .map(|(_, values)| match values {
+                            VertexValues::Vectors(vectors) => vectors[3][0][1],
+                            VertexValues::Radiance(radiance) => -radiance[0][0],
+                        })
+                        .sum::<f32>();
                 }
             })
             .map(|()| sum)

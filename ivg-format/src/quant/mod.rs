@@ -2,6 +2,7 @@
 
 pub mod direction;
 pub mod pack;
+pub mod ratio;
 pub mod rgb9e5;
 
 /// 2 to the power of `exponent`, for −149 ≤ `exponent` ≤ 127; exact, also where the result is subnormal.

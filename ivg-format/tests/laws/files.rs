@@ -2,7 +2,7 @@
 
 use ivg_format::{
     BakedLight, EncodeOptions, Encoding, Error, Event, GridSource, Header, HemisphereVectors, Lattice,
-    Limits, Step, decode_all, encode,
+    Limits, Quantity, RadianceHarmonics, Step, decode_all, encode,
 };
 use std::ops::Range;
 
@@ -18,6 +18,21 @@ pub(crate) fn vectors(lattice: &Lattice) -> Vec<HemisphereVectors> {
                         if i == h / 2 { size * sign } else { size * 0.25 * (i as f32 - 0.5) }
                     })
                 })
+            })
+        })
+        .collect()
+}
+
+/// Radiance harmonics that an encoding can hold, different for every vertex and channel, within the bounds of radiance that
+/// is never negative.
+pub(crate) fn radiance(lattice: &Lattice) -> Vec<RadianceHarmonics> {
+    (0..lattice.vertex_count())
+        .map(|v| {
+            std::array::from_fn(|channel| {
+                let mean = ((v * 3 + channel as u64) % 29) as f32 / 4.0;
+                std::array::from_fn(
+                    |k| if k == 0 { mean } else { mean * ((v as usize + k) % 9) as f32 / 9.0 },
+                )
             })
         })
         .collect()
@@ -60,7 +75,12 @@ pub(crate) fn full() -> Vec<u8> {
 
 pub(crate) fn plain(dims: [u16; 3], encoding: Encoding, vertices_per_slice: u32) -> Vec<u8> {
     let lattice = lattice(dims);
-    encode(&GridSource::new(lattice, &vectors(&lattice)), &options(encoding, vertices_per_slice)).unwrap()
+    let options = options(encoding, vertices_per_slice);
+    match encoding.quantity() {
+        Quantity::Vectors => encode(&GridSource::new(lattice, &vectors(&lattice)), &options),
+        Quantity::Radiance => encode(&GridSource::new(lattice, &radiance(&lattice)), &options),
+    }
+    .unwrap()
 }
 
 /// One file of each kind that matters to a decoder's states.
@@ -71,6 +91,7 @@ pub(crate) fn samples() -> Vec<Vec<u8>> {
         plain([2, 2, 2], Encoding::VectorsF32, 1),
         plain([1, 3, 2], Encoding::PackedOct24, 1),
         plain([1, 1, 4], Encoding::VectorsF32, 2),
+        plain([2, 3, 1], Encoding::Sh2, 1),
     ]
 }
 

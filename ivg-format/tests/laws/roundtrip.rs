@@ -3,7 +3,7 @@
 use crate::files::{full, header, lattice, one_shot, options, vectors};
 use ivg_format::{
     BakedLight, EncodeError, EncodeOptions, Encoding, Event, GridSource, HemisphereVectors, Lattice,
-    LatticeError, Limits, Units, decode_all, encode, lights, metadata,
+    LatticeError, Limits, Quantity, Units, decode_all, encode, lights, metadata,
 };
 use quickcheck::{TestResult, quickcheck};
 
@@ -12,8 +12,8 @@ fn decoded(file: &[u8]) -> Vec<HemisphereVectors> {
     let mut all = vec![None; header(file).lattice.vertex_count() as usize];
     decode_all(file, &Limits::default(), |event| {
         if let Event::Corners(bundle) | Event::Bundle(bundle) = event {
-            for (vertex, vectors) in bundle.iter() {
-                all[vertex as usize] = Some(vectors);
+            for (n, vertex) in bundle.vertices().enumerate() {
+                all[vertex as usize] = Some(bundle.vectors(n));
             }
         }
     })
@@ -157,8 +157,8 @@ fn what_cannot_be_written_is_named() {
     for bad in [f32::NAN, f32::INFINITY] {
         let mut vectors = vectors.clone();
         vectors[2][5][1][0] = bad;
-        for encoding in Encoding::ALL {
-            let options = EncodeOptions { encoding: *encoding, ..options };
+        for &encoding in Encoding::ALL.iter().filter(|e| e.quantity() == Quantity::Vectors) {
+            let options = EncodeOptions { encoding, ..options };
             let error = encode(&GridSource::new(good, &vectors), &options).unwrap_err();
             assert_eq!(error, EncodeError::NotFinite { vertex: [0, 2, 0], hemisphere: 5 });
             assert!(error.to_string().contains("(0, 2, 0)") && error.to_string().contains("-z"), "{error}");
@@ -172,7 +172,7 @@ fn what_cannot_be_written_is_named() {
     );
     assert_eq!(
         error(GridSource::new(good, &vectors[..2])),
-        EncodeError::Count { what: "vectors", found: 2, expected: 3 }
+        EncodeError::Count { what: "values", found: 2, expected: 3 }
     );
     assert_eq!(
         error(GridSource { validity: Some(&[1]), ..source }),
