@@ -3,6 +3,8 @@
 mod damage;
 mod fields;
 mod files;
+mod judgement;
 mod orders;
 mod roundtrip;
+mod sizes;
 mod splits;

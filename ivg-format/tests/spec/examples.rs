@@ -38,7 +38,7 @@ fn the_worked_example_is_what_the_encoder_writes_and_the_decoder_reads() {
     let mut received = BTreeMap::new();
     decode_all(&bytes, &Limits::default(), |event| {
         if let Event::Corners(bundle) | Event::Bundle(bundle) = event {
-            received.extend(bundle.iter());
+            received.extend(bundle.vertices().zip((0..bundle.len()).map(|n| bundle.vectors(n))));
         }
     })
     .unwrap();
