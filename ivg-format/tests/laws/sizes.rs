@@ -91,6 +91,8 @@ fn header_of(dims: [u16; 3], bundles: u32) -> Vec<u8> {
     let mut bytes = plain([3, 3, 3], Encoding::PackedOct24, 1)[..144].to_vec();
     for (axis, n) in dims.into_iter().enumerate() {
         bytes[56 + 2 * axis..][..2].copy_from_slice(&n.to_le_bytes());
+        let step = if n == 1 { 0.0f64 } else { 1.0 };
+        bytes[88 + 8 * axis..][..8].copy_from_slice(&step.to_le_bytes());
     }
     bytes[128..132].copy_from_slice(&bundles.to_le_bytes());
     seal_header(&mut bytes);
