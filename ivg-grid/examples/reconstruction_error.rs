@@ -52,7 +52,7 @@ fn main() {
     for ensemble in &ENSEMBLES {
         let environments: Vec<Environment> =
             (0..ENVIRONMENTS).map(|index| Environment::new(ensemble, index, &directions, &normals)).collect();
-        for method in Reconstruction::ALL {
+        for method in Reconstruction::OF_VECTORS {
             print_row(ensemble.name, method.name(), &environments, &normals, |v, n| {
                 reconstruct_signed(method, v, n)
             });

@@ -5,7 +5,7 @@ use ivg_format::{Event, GridSource, Header, Limits, decode_all};
 use crate::{GridError, IrradianceGrid, VALIDITY_FREE};
 
 impl IrradianceGrid {
-    /// Takes over what an event brings: the vectors of a bundle or of the corners, or a block of validity and blocked
+    /// Takes over what an event brings: the values of a bundle or of the corners, or a block of validity and blocked
     /// edges. Other events bring nothing; a header is only compared.
     ///
     /// Events may come in any order, as records fetched one by one do. A record that comes again replaces the first:
@@ -13,14 +13,15 @@ impl IrradianceGrid {
     ///
     /// # Errors
     ///
-    /// [`GridError::OtherLattice`] if the event belongs to a file with another lattice. The grid is as before then.
+    /// [`GridError::OtherLattice`] and [`GridError::OtherQuantity`] if the event belongs to another file. The grid is as
+    /// before then.
     pub fn accept(&mut self, event: &Event<'_>) -> Result<(), GridError> {
         match event {
             Event::Header(header) => self.check_lattice(header),
             Event::Corners(bundle) | Event::Bundle(bundle) => {
                 self.check_lattice(bundle.header())?;
-                for (vertex, vectors) in bundle.iter() {
-                    self.set(address(vertex), &vectors);
+                for (vertex, values) in bundle.iter() {
+                    self.set(address(vertex), values);
                 }
                 Ok(())
             }
@@ -41,8 +42,8 @@ impl IrradianceGrid {
 
     /// The grid in a whole file, and the file's header.
     ///
-    /// Allocates 219 bytes a vertex, and that only once the file is seen to be as long as its header says: at most
-    /// six times the length of `bytes`.
+    /// Allocates 219 bytes a vertex, 111 for radiance harmonics, and that only once the file is seen to be as long as its
+    /// header says: at most six times the length of `bytes`.
     ///
     /// # Errors
     ///
@@ -55,8 +56,11 @@ impl IrradianceGrid {
                 if let Event::Header(header) = event
                     && header.file_bytes <= bytes.len() as u64
                 {
-                    whole =
-                        Some(Self::with_limit(header.lattice, limits.vertices).map(|grid| (grid, *header)));
+                    whole = {
+                        let grid =
+                            Self::with_limit(header.lattice, header.encoding.quantity(), limits.vertices);
+                        Some(grid.map(|grid| (grid, *header)))
+                    };
                 }
             }
             Some(Ok((grid, _))) => {
@@ -77,7 +81,7 @@ impl IrradianceGrid {
     /// Vertices without a value are written as darkness: a file has no missing ones.
     #[must_use]
     pub fn as_source(&self) -> GridSource<'_> {
-        let mut source = GridSource::new(*self.lattice(), self.vectors());
+        let mut source = GridSource::new(*self.lattice(), self.values());
         source.validity =
             self.validity().iter().any(|&validity| validity != VALIDITY_FREE).then(|| self.validity());
         source.blocked_edges = (self.blocked_edge_count() > 0).then(|| self.blocked_edges());
@@ -85,7 +89,13 @@ impl IrradianceGrid {
     }
 
     fn check_lattice(&self, header: &Header) -> Result<(), GridError> {
-        if header.lattice == *self.lattice() { Ok(()) } else { Err(GridError::OtherLattice) }
+        if header.lattice != *self.lattice() {
+            return Err(GridError::OtherLattice);
+        }
+        if header.encoding.quantity() != self.quantity() {
+            return Err(GridError::OtherQuantity);
+        }
+        Ok(())
     }
 }
 

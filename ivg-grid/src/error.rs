@@ -24,6 +24,8 @@ pub enum GridError {
     },
     /// A record belongs to a grid with another lattice.
     OtherLattice,
+    /// A record holds another quantity than the grid.
+    OtherQuantity,
     /// An array does not have one element a vertex.
     Length {
         /// Name of the array.
@@ -49,6 +51,9 @@ impl fmt::Display for GridError {
             Self::Format(error) => error.fmt(f),
             Self::OtherLattice => f.write_str(
                 "the record belongs to a file with another lattice; start again with that file's header",
+            ),
+            Self::OtherQuantity => f.write_str(
+                "the record holds another quantity than the grid; start again with that file's header",
             ),
             Self::Length { array, found, vertices } => {
                 write!(f, "the array of {array} has {found} elements; the lattice has {vertices} vertices")

@@ -1,8 +1,8 @@
 //! The dense grid in memory: what is known about every vertex of a lattice.
 
-use ivg_format::{HemisphereVectors, Lattice};
+use ivg_format::{HemisphereVectors, Lattice, Quantity, RadianceHarmonics, Values, VertexValues};
 
-use crate::GridError;
+use crate::{GridError, GridValues};
 
 /// Vertices that a grid may have unless the caller allows another number: 256³, which take 3.7 GB.
 pub const DEFAULT_MAX_VERTICES: u64 = 1 << 24;
@@ -14,9 +14,10 @@ pub const VALIDITY_FREE: u8 = 255;
 /// +z neighbour.
 pub const BLOCKED_BITS: u8 = 0b111;
 
-/// Irradiance vectors on the vertices of a lattice, and what is known about each vertex.
+/// Indirect light on the vertices of a lattice, as irradiance vectors or as radiance harmonics, and what is known about
+/// each vertex.
 ///
-/// Three things are kept apart: whether a vertex was **received** (its vectors have arrived), whether it is **valid**
+/// Three things are kept apart: whether a vertex was **received** (its values have arrived), whether it is **valid**
 /// (light reaches it; 0 = inside geometry), and which of its **edges are blocked** (cut by geometry). A value of zero
 /// is darkness, never a sign that something is missing.
 ///
@@ -24,7 +25,7 @@ pub const BLOCKED_BITS: u8 = 0b111;
 #[derive(Clone, Debug, PartialEq)]
 pub struct IrradianceGrid {
     lattice: Lattice,
-    vectors: Vec<HemisphereVectors>,
+    values: GridValues,
     received: BitSet,
     validity: Vec<u8>,
     blocked_edges: Vec<u8>,
@@ -34,30 +35,38 @@ pub struct IrradianceGrid {
 }
 
 impl IrradianceGrid {
-    /// A grid of at most [`DEFAULT_MAX_VERTICES`] vertices, none received, all valid, no edge blocked.
+    /// A grid of irradiance vectors, of at most [`DEFAULT_MAX_VERTICES`] vertices, none received, all valid, no edge
+    /// blocked.
     ///
     /// # Errors
     ///
     /// [`GridError::Lattice`] if the lattice breaks its own rules, [`GridError::TooManyVertices`] if it is too
     /// large. Nothing is allocated then.
     pub fn new(lattice: Lattice) -> Result<Self, GridError> {
-        Self::with_limit(lattice, DEFAULT_MAX_VERTICES)
+        Self::of(lattice, Quantity::Vectors)
     }
 
-    /// Like [`IrradianceGrid::new`], of at most `max_vertices` vertices. A vertex takes 219 bytes.
+    /// Like [`IrradianceGrid::new`], of either quantity.
+    ///
+    /// # Errors
+    ///
+    /// As [`IrradianceGrid::new`].
+    pub fn of(lattice: Lattice, quantity: Quantity) -> Result<Self, GridError> {
+        Self::with_limit(lattice, quantity, DEFAULT_MAX_VERTICES)
+    }
+
+    /// Like [`IrradianceGrid::of`], of at most `max_vertices` vertices. A vertex takes 219 bytes for irradiance vectors,
+    /// 111 for radiance harmonics.
     ///
     /// # Errors
     ///
     /// As [`IrradianceGrid::new`]. Grids of 2³² vertices or more are refused whatever the limit.
-    pub fn with_limit(lattice: Lattice, max_vertices: u64) -> Result<Self, GridError> {
+    pub fn with_limit(lattice: Lattice, quantity: Quantity, max_vertices: u64) -> Result<Self, GridError> {
         let count = checked_vertices(&lattice, max_vertices)?;
-        // Not `vec!`: there, running out of memory ends the process.
-        let mut vectors = Vec::new();
-        vectors.try_reserve_exact(count).map_err(|_| GridError::Memory { vertices: count })?;
-        vectors.resize(count, [[[0.0; 3]; 3]; 6]);
+        let values = GridValues::dark(quantity, count).ok_or(GridError::Memory { vertices: count })?;
         Ok(Self {
             lattice,
-            vectors,
+            values,
             received: BitSet::new(count),
             validity: vec![VALIDITY_FREE; count],
             blocked_edges: vec![0; count],
@@ -74,12 +83,13 @@ impl IrradianceGrid {
     /// As [`IrradianceGrid::new`], and [`GridError::Length`] if there is not one element a vertex.
     pub fn from_parts(
         lattice: Lattice,
-        vectors: Vec<HemisphereVectors>,
+        values: impl Into<GridValues>,
         validity: Vec<u8>,
         blocked_edges: Vec<u8>,
     ) -> Result<Self, GridError> {
+        let values = values.into();
         let count = checked_vertices(&lattice, u64::from(u32::MAX))?;
-        check_length("irradiance vectors", vectors.len(), count)?;
+        check_length(values.quantity().name(), values.len(), count)?;
         check_length("validity", validity.len(), count)?;
         check_length("blocked edges", blocked_edges.len(), count)?;
         let mut received = BitSet::new(count);
@@ -91,7 +101,7 @@ impl IrradianceGrid {
         let blocked_count = blocked_edges.iter().map(|bits| bits.count_ones() as usize).sum();
         Ok(Self {
             lattice,
-            vectors,
+            values,
             received,
             validity,
             blocked_edges,
@@ -110,7 +120,7 @@ impl IrradianceGrid {
     /// Number of vertices of the lattice.
     #[must_use]
     pub fn vertex_count(&self) -> usize {
-        self.vectors.len()
+        self.values.len()
     }
 
     /// Number of vertices received so far.
@@ -158,7 +168,7 @@ impl IrradianceGrid {
         self.validity[index] > 0
     }
 
-    /// Whether a vertex has vectors: received, or given by [`fill`](crate::fill()).
+    /// Whether a vertex has a value: received, or given by [`fill`](crate::fill()).
     ///
     /// # Panics
     ///
@@ -168,17 +178,54 @@ impl IrradianceGrid {
         self.filled || self.is_received(index)
     }
 
-    /// The vectors of a vertex, or nothing where it has none.
+    /// The values of a vertex, or nothing where it has none.
     #[must_use]
-    pub fn get(&self, index: usize) -> Option<&HemisphereVectors> {
-        let vectors = self.vectors.get(index)?;
-        self.has_value(index).then_some(vectors)
+    pub fn get(&self, index: usize) -> Option<VertexValues> {
+        if index >= self.vertex_count() || !self.has_value(index) {
+            return None;
+        }
+        Some(match &self.values {
+            GridValues::Vectors(vectors) => VertexValues::from(&vectors[index]),
+            GridValues::Radiance(radiance) => VertexValues::from(&radiance[index]),
+        })
     }
 
-    /// The vectors of all vertices in order of the linear index; zero where a vertex has none.
+    /// What the values of the vertices are.
+    #[must_use]
+    pub fn quantity(&self) -> Quantity {
+        self.values.quantity()
+    }
+
+    /// The values of all vertices in order of the linear index; zero where a vertex has none.
+    #[must_use]
+    pub fn values(&self) -> Values<'_> {
+        self.values.borrowed()
+    }
+
+    /// The irradiance vectors of all vertices in order of the linear index; zero where a vertex has none.
+    ///
+    /// # Panics
+    ///
+    /// If the grid holds radiance harmonics.
     #[must_use]
     pub fn vectors(&self) -> &[HemisphereVectors] {
-        &self.vectors
+        match &self.values {
+            GridValues::Vectors(vectors) => vectors,
+            GridValues::Radiance(_) => panic!("a grid of radiance harmonics has no irradiance vectors"),
+        }
+    }
+
+    /// The radiance harmonics of all vertices in order of the linear index; zero where a vertex has none.
+    ///
+    /// # Panics
+    ///
+    /// If the grid holds irradiance vectors.
+    #[must_use]
+    pub fn radiance(&self) -> &[RadianceHarmonics] {
+        match &self.values {
+            GridValues::Radiance(radiance) => radiance,
+            GridValues::Vectors(_) => panic!("a grid of irradiance vectors has no radiance harmonics"),
+        }
     }
 
     /// The validity of all vertices in order of the linear index: 0 inside geometry … 255 all free.
@@ -193,15 +240,15 @@ impl IrradianceGrid {
         &self.blocked_edges
     }
 
-    /// Receives the vectors of a vertex; a second time replaces the first.
+    /// Receives the values of a vertex; a second time replaces the first.
     ///
     /// Values filled in before stay as they are: fill the grid of received vertices again.
     ///
     /// # Panics
     ///
-    /// If `index` is not less than the number of vertices.
-    pub fn set(&mut self, index: usize, vectors: &HemisphereVectors) {
-        self.vectors[index] = *vectors;
+    /// If `index` is not less than the number of vertices, or the values are of the other quantity.
+    pub fn set(&mut self, index: usize, values: impl Into<VertexValues>) {
+        self.values.put(index, &values.into());
         self.received.insert(index);
     }
 
@@ -227,15 +274,10 @@ impl IrradianceGrid {
         self.blocked_count = self.blocked_count + bits.count_ones() as usize - before.count_ones() as usize;
     }
 
-    /// The largest absolute component of all vectors \[W/m²\]: what an upload at half precision scales by.
+    /// The largest absolute number of all values \[W/m² or W/(m² sr)\]: what an upload at half precision scales by.
     #[must_use]
     pub fn largest_component(&self) -> f32 {
-        self.vectors
-            .as_flattened()
-            .as_flattened()
-            .as_flattened()
-            .iter()
-            .fold(0.0, |largest, c| largest.max(c.abs()))
+        self.values.numbers().iter().fold(0.0, |largest, c| largest.max(c.abs()))
     }
 
     /// Whether every vertex has a value and is valid, and no edge is blocked: lookups need not look at any of it.
@@ -245,12 +287,13 @@ impl IrradianceGrid {
             && (self.filled || self.received.count == self.vertex_count())
     }
 
-    /// The same grid with other vectors, every vertex valued.
-    pub(crate) fn filled_with(&self, vectors: Vec<HemisphereVectors>) -> Self {
-        debug_assert_eq!(vectors.len(), self.vertex_count());
+    /// The same grid with other values, every vertex valued.
+    pub(crate) fn filled_with(&self, values: impl Into<GridValues>) -> Self {
+        let values = values.into();
+        debug_assert_eq!(values.len(), self.vertex_count());
         Self {
             lattice: self.lattice,
-            vectors,
+            values,
             received: self.received.clone(),
             validity: self.validity.clone(),
             blocked_edges: self.blocked_edges.clone(),

@@ -49,6 +49,7 @@ pub mod cases;
 mod error;
 mod fill;
 mod grid;
+pub mod harmonics;
 pub mod integrate;
 mod lookup;
 mod metrics;
@@ -56,16 +57,18 @@ mod pyramid;
 mod reconstruct;
 pub mod spatial;
 pub mod texture;
+mod values;
 
 pub use error::GridError;
 pub use fill::{FillOptions, fill};
 pub use grid::{BLOCKED_BITS, DEFAULT_MAX_VERTICES, IrradianceGrid, VALIDITY_FREE};
-pub use ivg_format::HemisphereVectors;
+pub use ivg_format::{HemisphereVectors, Quantity, RadianceHarmonics, Values, VertexValues};
 pub use lookup::SURFACE_BIAS;
 pub use metrics::{IrradianceError, relative_rmse};
 pub use reconstruct::{Reconstruction, TANGENTIAL_SHARE, reconstruct, reconstruct_signed, three_vector};
 pub use spatial::SpatialFilter;
-pub use texture::{FLAG_USABLE, INVALID_TEXTURE_WEIGHT, TEXTURE_COUNT};
+pub use texture::{FLAG_USABLE, INVALID_TEXTURE_WEIGHT, texture_count};
+pub use values::GridValues;
 
 /// The example of the repository's README, compiled with this crate's doc tests.
 #[cfg(doctest)]

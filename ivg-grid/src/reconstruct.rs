@@ -1,7 +1,7 @@
 //! From the six irradiance vectors of a point to the irradiance of a surface with a given normal.
 
 use glam::Vec3;
-use ivg_format::Encoding;
+use ivg_format::{Encoding, Quantity};
 
 use crate::HemisphereVectors;
 
@@ -38,19 +38,25 @@ pub enum Reconstruction {
     ThreeVector,
     /// All six vectors, in a quadratic form of the normal: for floating-point vectors.
     SixVector,
+    /// The convolution of the radiance harmonics with the cosine: see [`harmonics`](crate::harmonics).
+    Harmonics,
 }
 
 impl Reconstruction {
     /// All formulas.
-    pub const ALL: [Self; 3] = [Self::NSquared, Self::ThreeVector, Self::SixVector];
+    pub const ALL: [Self; 4] = [Self::NSquared, Self::ThreeVector, Self::SixVector, Self::Harmonics];
 
-    /// The name that commands and reports use: `n2`, `three` or `six`.
+    /// The formulas that start from irradiance vectors, the papers' baseline first.
+    pub const OF_VECTORS: [Self; 3] = [Self::NSquared, Self::ThreeVector, Self::SixVector];
+
+    /// The name that commands and reports use: `n2`, `three`, `six` or `sh2`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::NSquared => "n2",
             Self::ThreeVector => "three",
             Self::SixVector => "six",
+            Self::Harmonics => "sh2",
         }
     }
 
@@ -66,8 +72,15 @@ impl Reconstruction {
     pub fn for_encoding(encoding: Encoding) -> Self {
         match encoding {
             Encoding::VectorsF32 => Self::SixVector,
+            Encoding::Sh2 => Self::Harmonics,
             _ => Self::ThreeVector,
         }
+    }
+
+    /// Whether the formula can be evaluated from a quantity.
+    #[must_use]
+    pub fn fits(self, quantity: Quantity) -> bool {
+        (self == Self::Harmonics) == (quantity == Quantity::Radiance)
     }
 
     /// Whether the formula reads a hemisphere's vectors for a surface with normal `n`.
@@ -76,11 +89,16 @@ impl Reconstruction {
         match self {
             Self::NSquared | Self::ThreeVector => hemisphere == facing(hemisphere / 2, n),
             Self::SixVector => true,
+            Self::Harmonics => false,
         }
     }
 }
 
 /// The irradiance of a surface with unit normal `n` \[W/m²\], one value a channel, never negative.
+///
+/// # Panics
+///
+/// With [`Reconstruction::Harmonics`], which has no vectors to start from.
 #[must_use]
 pub fn reconstruct(method: Reconstruction, vectors: &HemisphereVectors, n: Vec3) -> Vec3 {
     reconstruct_signed(method, vectors, n).max(Vec3::ZERO)
@@ -89,12 +107,17 @@ pub fn reconstruct(method: Reconstruction, vectors: &HemisphereVectors, n: Vec3)
 /// What [`reconstruct`] cuts off at zero \[W/m²\]: narrow light can make it negative behind the surface.
 ///
 /// Linear in the vectors, so it commutes with their interpolation.
+///
+/// # Panics
+///
+/// With [`Reconstruction::Harmonics`], which has no vectors to start from.
 #[must_use]
 pub fn reconstruct_signed(method: Reconstruction, vectors: &HemisphereVectors, n: Vec3) -> Vec3 {
     match method {
         Reconstruction::NSquared => n_squared(vectors, n),
         Reconstruction::ThreeVector => three_vector(vectors, n, TANGENTIAL_SHARE),
         Reconstruction::SixVector => six_vector(vectors, n),
+        Reconstruction::Harmonics => panic!("irradiance vectors cannot be reconstructed by sh2"),
     }
 }
 

@@ -100,7 +100,7 @@ fn textures_point_spot_and_sun_light() {
 #[test]
 fn indirect_light_alone_with_every_reconstruction_and_filter() {
     let scene = scenes::cornell(true);
-    for reconstruction in Reconstruction::ALL {
+    for reconstruction in Reconstruction::OF_VECTORS {
         for filter in SpatialFilter::ALL {
             let mut options = options();
             options.direct = false;

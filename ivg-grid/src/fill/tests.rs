@@ -143,7 +143,11 @@ fn nothing_received_is_darkness() {
     grid.set(7, &[[[9.0; 3]; 3]; 6]);
     grid.set_validity(7, 0);
     assert!(fill(&grid, &BOTH[0]).vectors().iter().all(|vectors| *vectors == [[[0.0; 3]; 3]; 6]));
-    assert_eq!(grid.get(7), Some(&[[[9.0; 3]; 3]; 6]), "the given grid keeps what it received");
+    assert_eq!(
+        grid.get(7),
+        Some(crate::VertexValues::Vectors([[[9.0; 3]; 3]; 6])),
+        "the given grid keeps what it received"
+    );
 }
 
 #[test]

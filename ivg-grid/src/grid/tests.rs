@@ -21,7 +21,7 @@ fn zero_light_counts_as_received_and_a_repeat_counts_once() {
     grid.set(64, &[[[0.0; 3]; 3]; 6]);
     assert_eq!(grid.received_count(), 1);
     assert!(grid.is_received(64) && !grid.is_received(63) && !grid.is_received(65));
-    assert_eq!(grid.get(64), Some(&[[[0.0; 3]; 3]; 6]));
+    assert_eq!(grid.get(64), Some(VertexValues::Vectors([[[0.0; 3]; 3]; 6])));
     assert_eq!(grid.get(140), None);
 }
 
@@ -31,9 +31,12 @@ fn a_lattice_above_the_limit_is_refused_before_anything_is_allocated() {
     let huge = Lattice { dims: [65_535; 3], origin: [0.0; 3], step: [1.0; 3] };
     let expected = GridError::TooManyVertices { vertices: 65_535u64.pow(3), limit: DEFAULT_MAX_VERTICES };
     assert_eq!(IrradianceGrid::new(huge), Err(expected));
-    assert!(matches!(IrradianceGrid::with_limit(huge, u64::MAX), Err(GridError::TooManyVertices { .. })));
-    assert!(IrradianceGrid::with_limit(lattice([2, 2, 2]), 8).is_ok());
-    assert!(IrradianceGrid::with_limit(lattice([2, 2, 2]), 7).is_err());
+    assert!(matches!(
+        IrradianceGrid::with_limit(huge, Quantity::Vectors, u64::MAX),
+        Err(GridError::TooManyVertices { .. })
+    ));
+    assert!(IrradianceGrid::with_limit(lattice([2, 2, 2]), Quantity::Vectors, 8).is_ok());
+    assert!(IrradianceGrid::with_limit(lattice([2, 2, 2]), Quantity::Vectors, 7).is_err());
     let empty = Lattice { dims: [0, 1, 1], origin: [0.0; 3], step: [0.0; 3] };
     assert!(matches!(IrradianceGrid::new(empty), Err(GridError::Lattice(_))));
 }

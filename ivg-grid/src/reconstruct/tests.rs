@@ -69,7 +69,7 @@ fn uniform() -> HemisphereVectors {
 
 #[test]
 fn names_are_unique_and_read_back() {
-    for method in Reconstruction::ALL {
+    for method in Reconstruction::OF_VECTORS {
         assert_eq!(Reconstruction::from_name(method.name()), Some(method));
     }
     assert_eq!(Reconstruction::from_name("auto"), None);
@@ -83,7 +83,7 @@ fn exact_on_the_axes() {
         let vectors = light.vectors();
         [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z].into_iter().all(|n| {
             let exact = light.irradiance(n);
-            Reconstruction::ALL.into_iter().all(|method| {
+            Reconstruction::OF_VECTORS.into_iter().all(|method| {
                 // Six terms of at most 6 units each, summed twice in f32: 1e-5 is 14 roundings of the sum.
                 (reconstruct(method, &vectors, n) - exact).abs().max_element() < 1e-5
             })
@@ -141,7 +141,7 @@ fn continuous_where_a_normal_component_changes_sign() {
         let mut below = on_plane;
         below[axis] = -step;
         let vectors = light.vectors();
-        TestResult::from_bool(Reconstruction::ALL.into_iter().all(|method| {
+        TestResult::from_bool(Reconstruction::OF_VECTORS.into_iter().all(|method| {
             let jump = reconstruct(method, &vectors, above) - reconstruct(method, &vectors, below);
             jump.abs().max_element() < 2.0 * step * 4.0 * 36.0
         }))
@@ -153,7 +153,7 @@ fn continuous_where_a_normal_component_changes_sign() {
 fn never_negative_and_the_signed_value_only_differs_below_zero() {
     fn law(light: Light, Normal(n): Normal) -> bool {
         let vectors = light.vectors();
-        Reconstruction::ALL.into_iter().all(|method| {
+        Reconstruction::OF_VECTORS.into_iter().all(|method| {
             let signed = reconstruct_signed(method, &vectors, n);
             let cut = reconstruct(method, &vectors, n);
             cut.cmpge(Vec3::ZERO).all() && (cut.cmpeq(signed) | signed.cmplt(Vec3::ZERO)).all()
@@ -194,7 +194,7 @@ fn six_vectors_are_exact_for_light_of_degree_two() {
 fn hemispheres_that_a_formula_does_not_read_do_not_matter() {
     fn law(light: Light, Normal(n): Normal) -> bool {
         let vectors = light.vectors();
-        Reconstruction::ALL.into_iter().all(|method| {
+        Reconstruction::OF_VECTORS.into_iter().all(|method| {
             let mut poisoned = vectors;
             for (hemisphere, channels) in poisoned.iter_mut().enumerate() {
                 if !method.reads(hemisphere, n) {
@@ -234,7 +234,7 @@ fn every_component_counts_as_the_formulas_say() {
         let squares = 4.0 * difference(0, 0) + 9.0 * difference(1, 1) + 36.0 * difference(2, 2);
         let six =
             0.5 * ((-2.0 * sum(0) + 3.0 * sum(1) + 6.0 * sum(2)) / 7.0 + (squares + 0.5 * mixed) / 49.0);
-        for (method, expected) in Reconstruction::ALL.into_iter().zip([squared, three, six]) {
+        for (method, expected) in Reconstruction::OF_VECTORS.into_iter().zip([squared, three, six]) {
             let found = reconstruct_signed(method, &vectors, n)[channel];
             // Some 20 roundings of sums below 8.
             assert!(

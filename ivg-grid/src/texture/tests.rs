@@ -31,7 +31,7 @@ fn each_texture_holds_one_channel_of_one_hemisphere() {
         assert_eq!(texels[2], [0.0; 4], "missing: no weight");
         assert_eq!(texels[3], [300.0 + first, 301.0 + first, 302.0 + first, 1.0]);
     }
-    assert_eq!(grid.texture_layers().count(), TEXTURE_COUNT);
+    assert_eq!(grid.texture_layers().count(), texture_count(Quantity::Vectors));
 }
 
 #[test]
