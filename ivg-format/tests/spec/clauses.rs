@@ -1,7 +1,8 @@
 //! The clauses: where they are defined, whom they bind, which tests show that they hold.
 
-use super::{read, rows};
+use super::{read, repository, rows};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 /// Clause ids that stand in a text: `COM-…-nn` and `IVG-…-nn`.
 fn cited(text: &str) -> BTreeSet<String> {
@@ -52,23 +53,109 @@ fn every_clause_is_listed_with_the_parties_it_binds() {
     assert!(listed.values().flatten().all(|party| known.contains(&party.as_str())));
 }
 
-#[test]
-fn every_clause_that_is_cited_exists() {
-    let defined = defined();
-    let mut sources = vec![];
-    for folder in ["../ivg-wire/src", "../ivg-format/src", "../spec/tables"] {
-        let mut folders = vec![std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(folder)];
-        while let Some(folder) = folders.pop() {
-            for entry in std::fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() { folders.push(path) } else { sources.push(path) }
+/// The source files below the folders of this name in every crate.
+fn sources(name: &str) -> Vec<PathBuf> {
+    let mut found = vec![];
+    let crates = std::fs::read_dir(repository("")).unwrap().map(|entry| entry.unwrap().path().join(name));
+    let mut folders: Vec<PathBuf> = crates.filter(|folder| folder.is_dir()).collect();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                found.push(path);
             }
         }
     }
-    assert!(sources.len() > 20, "the sources were not found");
-    for source in sources {
-        for id in cited(&std::fs::read_to_string(&source).unwrap()) {
-            assert!(defined.contains_key(&id), "{}: {id} is not defined", source.display());
+    found
+}
+
+#[test]
+fn every_clause_that_is_cited_exists() {
+    let defined = defined();
+    let mut texts: Vec<(String, String)> = [sources("src"), sources("tests")]
+        .concat()
+        .into_iter()
+        .map(|path| (path.display().to_string(), std::fs::read_to_string(path).unwrap()))
+        .collect();
+    assert!(texts.len() > 100, "the sources were not found");
+    for table in ["clauses", "common", "errors", "ivg", "limits", "registry"] {
+        texts.push((format!("tables/{table}.toml"), read(&format!("tables/{table}.toml"))));
+    }
+    for document in ["common", "ivg", "pmesh", "stream", "gltf-extensions", "CHANGELOG"] {
+        texts.push((format!("{document}.md"), read(&format!("{document}.md"))));
+    }
+    for (name, text) in texts {
+        for id in cited(&text) {
+            assert!(defined.contains_key(&id), "{name}: {id} is not defined");
         }
     }
+}
+
+/// Whether a source has a test of this name: a function marked as one, or a property of `quickcheck!`.
+fn has_test(source: &str, name: &str) -> bool {
+    let lines: Vec<&str> = source.lines().collect();
+    let Some(at) = lines.iter().position(|line| line.trim_start().starts_with(&format!("fn {name}("))) else {
+        return false;
+    };
+    let attributes = lines[..at].iter().rev().take_while(|line| line.trim_start().starts_with("#["));
+    let is_marked = attributes.clone().any(|line| line.trim() == "#[test]")
+        || attributes.clone().any(|line| line.trim().starts_with("#[quickcheck"));
+    // A block of properties begins and ends at the margin.
+    let margin = lines[..at].iter().rev().find(|line| !line.starts_with([' ', '\n']) && !line.is_empty());
+    let is_property = lines[at].starts_with("    ") && margin.is_some_and(|line| *line == "quickcheck! {");
+    is_marked || is_property
+}
+
+/// What a clause names as its tests, each of which must exist.
+fn check_test(name: &str) -> Result<(), String> {
+    match name.split_once("::") {
+        Some((file, function)) => {
+            let source =
+                std::fs::read_to_string(repository(file)).map_err(|error| format!("{file}: {error}"))?;
+            has_test(&source, function).then_some(()).ok_or(format!("{file} has no test {function}"))
+        }
+        None => {
+            let vector = name.strip_prefix("conformance/vectors/").ok_or(format!("{name} is no test"))?;
+            let manifest = std::fs::read_to_string(repository("conformance/vectors/manifest.json")).unwrap();
+            let listed = manifest.contains(&format!("\"file\": \"{vector}\""));
+            listed.then_some(()).ok_or(format!("the manifest of the vectors has no {vector}"))
+        }
+    }
+}
+
+#[test]
+fn every_clause_names_tests_that_exist() {
+    let mut wrong = vec![];
+    let mut untestable = vec![];
+    for row in rows("clauses", "clause") {
+        let id = row["id"].as_str().unwrap();
+        let tests = row.get("tests").map(|tests| tests.as_array().unwrap().as_slice()).unwrap_or_default();
+        match row.get("untestable").map(|why| why.as_str().unwrap()) {
+            Some(why) if tests.is_empty() && why.len() > 20 => untestable.push(id.to_owned()),
+            Some(_) => wrong.push(format!("{id}: has both tests and none, or no reason why there is none")),
+            None if tests.is_empty() => wrong.push(format!("{id}: names no test")),
+            None => {}
+        }
+        let names: BTreeSet<&str> = tests.iter().map(|test| test.as_str().unwrap()).collect();
+        if names.len() != tests.len() {
+            wrong.push(format!("{id}: names a test twice"));
+        }
+        wrong.extend(
+            names.into_iter().filter_map(|name| check_test(name).err()).map(|why| format!("{id}: {why}")),
+        );
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(untestable.len() <= 6, "that is too many without a test: {untestable:?}");
+}
+
+#[test]
+fn a_test_that_does_not_exist_is_found_missing() {
+    let source =
+        "#[test]\nfn marked() {}\nfn helper() {}\nquickcheck! {\n    fn property(x: u8) -> bool {\n}\n";
+    let found = ["marked", "helper", "property", "absent"].map(|name| has_test(source, name));
+    assert_eq!(found, [true, false, true, false]);
+    let missing = ["ivg-format/tests/none.rs::f", "conformance/vectors/ivg/none.ivg", "a sentence"];
+    assert!(missing.into_iter().all(|name| check_test(name).is_err()));
 }

@@ -5,6 +5,7 @@
 mod clauses;
 mod examples;
 mod tables;
+mod values;
 
 use toml::Table;
 

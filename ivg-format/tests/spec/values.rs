@@ -1,0 +1,75 @@
+//! Numbers that the documents print, computed by this code.
+
+use super::read;
+use ivg_format::{Decoder, EncodeOptions, Encoding, Event, GridSource, Header, Lattice, Limits, encode};
+use ivg_wire::{Step, seal, seal_header, splitmix64};
+
+/// The numbers in a clause's text that are written as `0x…`.
+fn hexadecimal(document: &str, clause: &str) -> Vec<u64> {
+    let text = read(document);
+    let (_, after) = text.split_once(&format!("**{clause}**")).unwrap_or_else(|| panic!("{clause}"));
+    let (clause, _) = after.split_once("\n\n**").unwrap_or((after, ""));
+    clause
+        .split("0x")
+        .skip(1)
+        .map(|rest| {
+            let digits: String = rest.chars().take_while(char::is_ascii_hexdigit).collect();
+            u64::from_str_radix(&digits, 16).unwrap()
+        })
+        .collect()
+}
+
+#[test]
+fn the_generator_gives_the_printed_numbers() {
+    let [_, _, _, first, second, seed, last] = hexadecimal("common.md", "COM-INT-02")[..] else {
+        panic!("three constants, two numbers, a seed, a number")
+    };
+    assert_eq!([splitmix64(0, 0), splitmix64(0, 1), splitmix64(seed, 42)], [first, second, last]);
+}
+
+#[test]
+fn positions_are_a_product_and_a_sum_each_rounded() {
+    // The numbers of IVG-LAT-04. Fused, or with the step multiplied out differently, the result is 2^-55.
+    let lattice = Lattice { dims: [4, 1, 1], origin: [-0.3, 0.0, 0.0], step: [0.1, 0.0, 0.0] };
+    assert_eq!(lattice.check(), Ok(()));
+    let x = lattice.position(3, 0, 0)[0];
+    assert_eq!(x, 2f64.powi(-54));
+    assert_eq!(0.1f64.mul_add(3.0, -0.3), 2f64.powi(-55), "otherwise the numbers show nothing");
+    assert!(read("ivg.md").contains("2⁻⁵⁴"), "IVG-LAT-04 prints the result");
+}
+
+/// The x of red of the first hemisphere of a file of one vertex, `vectors-f32`, as read with a scale exponent.
+fn scaled(number: f32, scale_exponent: i16) -> f32 {
+    let lattice = Lattice::new([1, 1, 1], [0.0; 3], [0.0; 3]).unwrap();
+    let mut vectors = [[[[0.0; 3]; 3]; 6]];
+    vectors[0][0][0][0] = number;
+    let options = EncodeOptions { encoding: Encoding::VectorsF32, ..EncodeOptions::new() };
+    let mut file = encode(&GridSource::new(lattice, &vectors), &options).unwrap();
+    file[114..116].copy_from_slice(&scale_exponent.to_le_bytes());
+    seal_header(&mut file[..144]);
+    let Ok(Step::Consumed(_, header)) = Header::read(&file, &Limits::default()) else { panic!("a header") };
+    seal(&mut file[144..144 + 228], header.content_id);
+    let (mut decoder, mut rest) = (Decoder::new(Limits::default()), &file[..]);
+    while let Step::Consumed(used, event) = decoder.push(rest).unwrap() {
+        rest = &rest[used..];
+        if let Event::Corners(bundle) = event {
+            return bundle.vectors(0)[0][0][0];
+        }
+    }
+    panic!("no corners")
+}
+
+#[test]
+fn scaled_vectors_are_rounded_once_to_nearest_with_ties_to_even() {
+    let bits = |number: f32, exponent| scaled(number, exponent).to_bits();
+    // Subnormal results: 2^-100 × 2^-49 is the least number there is, one and a half of it lies half-way between 1 and
+    // 2 of it, two and a half half-way between 2 and 3.
+    let unit = 2f32.powi(-100);
+    assert_eq!(bits(unit, -49), 1);
+    assert_eq!(bits(1.5 * unit, -49), 2);
+    assert_eq!(bits(2.5 * unit, -49), 2);
+    assert_eq!(bits(0.5 * unit, -49), 0, "half of the least number is even as 0");
+    assert_eq!(bits(0.5 * unit * (1.0 + f32::EPSILON), -49), 1);
+    assert_eq!(bits(-0.0, -49), (-0.0f32).to_bits(), "the sign of a zero is kept");
+    assert_eq!(scaled(1.5, 112), 1.5 * 2f32.powi(112));
+}
