@@ -3,7 +3,9 @@
 use super::stream::{End, Seen, Transcript, transcribe};
 use super::{digest, pieces, slice};
 use crate::bounds::{Bound, Budget};
-use ivg_format::{Bundle, Decoder, Event, Header, Limits, ValidityBlock, decode_all, decode_record};
+use ivg_format::{
+    Bundle, Decoder, Event, Header, Limits, ValidityBlock, VertexValues, decode_all, decode_record,
+};
 use ivg_wire::{Error, Part, Step, Verdict};
 use std::collections::BTreeSet;
 
@@ -43,16 +45,22 @@ fn see_bundle(bundle: &Bundle<'_>) -> u64 {
     let vertices: Vec<u64> = bundle.vertices().collect();
     assert_eq!(vertices.len(), bundle.len());
     assert!(vertices.iter().all(|&vertex| vertex < count), "a vertex outside the lattice");
-    let vectors: Vec<u32> = (0..bundle.len())
-        .flat_map(|n| bundle.vectors(n))
-        .flatten()
-        .flatten()
-        .map(|component| {
-            assert!(component.is_finite(), "a component that is {component}");
-            component.to_bits()
+    let numbers: Vec<u32> = (0..bundle.len())
+        .flat_map(|n| numbers(&bundle.values(n)))
+        .map(|number| {
+            assert!(number.is_finite(), "a number that is {number}");
+            number.to_bits()
         })
         .collect();
-    digest((bundle.id(), bundle.generation(), bundle.payload(), vertices, vectors))
+    digest((bundle.id(), bundle.generation(), bundle.payload(), vertices, numbers))
+}
+
+/// The numbers of a vertex, one after the other.
+fn numbers(values: &VertexValues) -> Vec<f32> {
+    match values {
+        VertexValues::Vectors(vectors) => vectors.as_flattened().as_flattened().to_vec(),
+        VertexValues::Radiance(radiance) => radiance.as_flattened().to_vec(),
+    }
 }
 
 fn see_validity(block: &ValidityBlock<'_>) -> u64 {

@@ -3,9 +3,10 @@
 use crate::choices::Choices;
 use ivg_format::quant::direction::decode_octahedral24;
 use ivg_format::quant::pack::pack_hemisphere;
+use ivg_format::quant::ratio::decode as decode_ratio;
 use ivg_format::{
     BakedLight, EncodeError, EncodeOptions, Encoding, Event, GridSource, HemisphereVectors, Lattice, Limits,
-    Units, decode_all, encode, lights, metadata,
+    Quantity, RadianceHarmonics, Units, Values, VertexValues, decode_all, encode, lights, metadata,
 };
 
 /// Vertices along an axis, at most: the longest grid then has 125 vertices, which keeps an input fast.
@@ -19,16 +20,24 @@ const MOST_VERTICES: usize = 5;
 /// When that does not hold.
 pub fn ivg_roundtrip(data: &[u8]) {
     let mut choices = Choices::new(data);
-    let grid = Grid::choose(&mut choices);
     let options = choose_options(&mut choices);
+    let grid = Grid::choose(&mut choices, options.encoding.quantity());
     let source = grid.source();
     let file = match encode(&source, &options) {
-        // Too large for the exponent of the packed colours, as it may be.
-        Err(EncodeError::TooLarge { .. }) if options.encoding == Encoding::PackedOct24 => return,
+        // Too large for the exponent of the quantised colours, as it may be.
+        Err(EncodeError::TooLarge { .. } | EncodeError::RadianceTooLarge { .. })
+            if is_quantised(&options) =>
+        {
+            return;
+        }
         result => result.unwrap_or_else(|error| panic!("a sound grid is refused: {error}")),
     };
     assert_eq!(encode(&source, &options).as_ref(), Ok(&file), "encoded twice, and the bytes differ");
     grid.compare(&file, &options);
+}
+
+fn is_quantised(options: &EncodeOptions) -> bool {
+    options.encoding != Encoding::VectorsF32
 }
 
 fn choose_options(choices: &mut Choices<'_>) -> EncodeOptions {
@@ -44,11 +53,26 @@ fn choose_options(choices: &mut Choices<'_>) -> EncodeOptions {
 /// A grid that owns its arrays.
 struct Grid {
     lattice: Lattice,
-    vectors: Vec<HemisphereVectors>,
+    values: GridValues,
     validity: Option<Vec<u8>>,
     blocked_edges: Option<Vec<u8>>,
     lights: &'static [BakedLight<'static>],
     meta: &'static [(&'static str, &'static str)],
+}
+
+/// The values of all vertices.
+enum GridValues {
+    Vectors(Vec<HemisphereVectors>),
+    Radiance(Vec<RadianceHarmonics>),
+}
+
+impl GridValues {
+    fn borrowed(&self) -> Values<'_> {
+        match self {
+            Self::Vectors(vectors) => vectors.into(),
+            Self::Radiance(radiance) => radiance.into(),
+        }
+    }
 }
 
 const LIGHTS: [BakedLight<'_>; 2] = [
@@ -58,7 +82,7 @@ const LIGHTS: [BakedLight<'_>; 2] = [
 const META: [(&str, &str); 2] = [("generator", "a test"), ("photons", "")];
 
 impl Grid {
-    fn choose(choices: &mut Choices<'_>) -> Self {
+    fn choose(choices: &mut Choices<'_>, quantity: Quantity) -> Self {
         let dims = [0; 3].map(|_: u16| 1 + choices.below(MOST_VERTICES) as u16);
         let min = [0; 3].map(|_| f64::from(choices.byte()) - 128.0);
         let extent = [0; 3].map(|_| f64::from(choices.byte()) / 16.0 + 0.5);
@@ -79,15 +103,25 @@ impl Grid {
         let lights = &LIGHTS[..usize::from(flags >> 2) % 3];
         let meta = &META[..usize::from(flags >> 4) % 3];
         // Numbers of every size; zeros once the bytes are used up.
-        let mut vectors = vec![HemisphereVectors::default(); count];
-        vectors.iter_mut().flatten().flatten().flatten().for_each(|component| *component = choices.finite());
-        Self { lattice, vectors, validity, blocked_edges, lights, meta }
+        let values = match quantity {
+            Quantity::Vectors => {
+                let mut vectors = vec![HemisphereVectors::default(); count];
+                vectors.iter_mut().flatten().flatten().flatten().for_each(|c| *c = choices.finite());
+                GridValues::Vectors(vectors)
+            }
+            Quantity::Radiance => {
+                let mut radiance = vec![RadianceHarmonics::default(); count];
+                radiance.iter_mut().flatten().flatten().for_each(|c| *c = choices.finite());
+                GridValues::Radiance(radiance)
+            }
+        };
+        Self { lattice, values, validity, blocked_edges, lights, meta }
     }
 
     fn source(&self) -> GridSource<'_> {
         GridSource {
             lattice: self.lattice,
-            vectors: &self.vectors,
+            values: self.values.borrowed(),
             validity: self.validity.as_deref(),
             blocked_edges: self.blocked_edges.as_deref(),
             lights: self.lights,
@@ -96,7 +130,7 @@ impl Grid {
     }
 
     fn compare(&self, file: &[u8], options: &EncodeOptions) {
-        let count = self.vectors.len();
+        let count = self.values.borrowed().len();
         let mut received = vec![false; count];
         let mut validity = vec![255; count];
         let mut edges = vec![0; count];
@@ -127,12 +161,18 @@ impl Grid {
                 for (n, vertex) in bundle.vertices().enumerate() {
                     let vertex = vertex as usize;
                     assert!(!std::mem::replace(&mut received[vertex], true), "vertex {vertex} comes twice");
-                    match bundle.packed(n) {
-                        None => assert_eq!(bits(&bundle.vectors(n)), bits(&self.vectors[vertex])),
-                        Some(packed) => {
-                            let exponent = bundle.header().scale_exponent;
-                            compare_packed(&self.vectors[vertex], &packed, &bundle.vectors(n), exponent);
+                    let exponent = bundle.header().scale_exponent;
+                    match (bundle.values(n), bundle.packed(n), &self.values) {
+                        (VertexValues::Vectors(found), None, GridValues::Vectors(all)) => {
+                            assert_eq!(bits(&found), bits(&all[vertex]));
                         }
+                        (VertexValues::Vectors(found), Some(packed), GridValues::Vectors(all)) => {
+                            compare_packed(&all[vertex], &packed, &found, exponent);
+                        }
+                        (VertexValues::Radiance(found), None, GridValues::Radiance(all)) => {
+                            compare_harmonics(&all[vertex], &found, exponent);
+                        }
+                        _ => panic!("{:?} holds another quantity than was written", options.encoding),
                     }
                 }
             }
@@ -171,6 +211,26 @@ fn compare_packed(
                 "colour {colour} for {expected}: off by {error}, at most {half_step}"
             );
             assert_eq!(vectors[channel], direction.map(|d| colour * d));
+        }
+    }
+}
+
+/// The means are those given within the rounding of RGB9E5, as in [`compare_packed`]; every other coefficient is off by at
+/// most half a ratio step of the decoded mean, where its ratio lies within the bounds of radiance that is never negative.
+fn compare_harmonics(original: &RadianceHarmonics, found: &RadianceHarmonics, scale_exponent: i16) {
+    let means = original.map(|c| f64::from(c[0]).max(0.0));
+    let largest = means.iter().copied().fold(0.0, f64::max);
+    let half_step = (largest / 511.0).max(f64::from(scale_exponent - 25).exp2());
+    for ((original, found), mean) in original.iter().zip(found).zip(means) {
+        let decoded = f64::from(found[0]);
+        assert!((decoded - mean).abs() <= half_step, "mean {decoded} for {mean}");
+        for which in 1..9 {
+            let bounds = [127, -127].map(|code| f64::from(decode_ratio(code, which)) * decoded);
+            let expected = f64::from(original[which]).clamp(bounds[1], bounds[0]);
+            // Half a step of the coarser side, and three roundings of binary32.
+            let most = bounds[0].abs().max(bounds[1].abs()) * (0.5 / 127.0 + 3.0 * f64::from(f32::EPSILON));
+            let error = (f64::from(found[which]) - expected).abs();
+            assert!(error <= most + f64::from(f32::from_bits(1)), "coefficient {which}: off by {error}");
         }
     }
 }
