@@ -167,3 +167,29 @@ fn registries_and_limits_equal_their_rows() {
     assert_eq!(limits[0]["default"].as_integer(), Some(Limits::new().vertices as i64));
     assert_eq!(limits[0]["maximum"].as_integer(), Some(65_535 * 65_535 * 65_535));
 }
+
+#[test]
+fn chunk_types_are_four_capital_letters() {
+    for row in rows("registry", "chunks") {
+        let kind = row["type"].as_str().unwrap();
+        assert!(kind.len() == 4 && kind.bytes().all(|b| b.is_ascii_uppercase()), "{kind} (COM-CHK-09)");
+    }
+    // What the encoder writes is registered.
+    let lights = [ivg_format::BakedLight { name: "", direct_included: false }];
+    let lattice = ivg_format::Lattice::new([1, 1, 1], [0.0; 3], [0.0; 3]).unwrap();
+    let vectors = [[[[0.0; 3]; 3]; 6]];
+    let source = ivg_format::GridSource {
+        lights: &lights,
+        meta: &[("generator", "test")],
+        ..ivg_format::GridSource::new(lattice, &vectors)
+    };
+    let mut kinds = vec![];
+    let file = ivg_format::encode(&source, &ivg_format::EncodeOptions::new()).unwrap();
+    ivg_format::decode_all(&file, &Limits::default(), |event| {
+        if let ivg_format::Event::Chunk(chunk) = event {
+            kinds.push(chunk.kind.to_string());
+        }
+    })
+    .unwrap();
+    assert_eq!(kinds, ["LITE", "META"]);
+}
