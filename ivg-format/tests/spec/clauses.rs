@@ -49,7 +49,7 @@ fn every_clause_is_listed_with_the_parties_it_binds() {
         })
         .collect();
     assert_eq!(listed, defined(), "spec/tables/clauses.toml against the documents");
-    let known = ["writer", "reader", "validator", "definition"];
+    let known = ["writer", "reader", "validator", "evaluator", "definition"];
     assert!(listed.values().flatten().all(|party| known.contains(&party.as_str())));
 }
 
