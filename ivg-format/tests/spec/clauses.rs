@@ -83,7 +83,7 @@ fn every_clause_that_is_cited_exists() {
     for table in ["clauses", "common", "errors", "ivg", "limits", "registry"] {
         texts.push((format!("tables/{table}.toml"), read(&format!("tables/{table}.toml"))));
     }
-    for document in ["common", "ivg", "pmesh", "stream", "gltf-extensions", "CHANGELOG"] {
+    for document in ["common", "ivg", "pmesh", "stream", "gltf-extensions", "media-types", "CHANGELOG"] {
         texts.push((format!("{document}.md"), read(&format!("{document}.md"))));
     }
     for (name, text) in texts {

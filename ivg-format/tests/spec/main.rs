@@ -2,6 +2,7 @@
 //!
 //! `IVG_BLESS=1 cargo test -p ivg-format --test spec` writes the tables into the Markdown anew.
 
+mod aids;
 mod clauses;
 mod examples;
 mod tables;
