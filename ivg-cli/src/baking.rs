@@ -108,6 +108,7 @@ pub(crate) fn bake_options(settings: &BakeSettings) -> BakeOptions {
         },
         seed: settings.seed,
         threads: settings.threads.map(usize::from),
+        ..BakeOptions::default()
     }
 }
 

@@ -28,7 +28,7 @@ pub(crate) fn grid(path: &Path, bytes: &[u8]) -> Result<(GridHeader, IrradianceG
         }
     }
     match (decoder.header(), grid) {
-        (Some(header), Some(grid)) => Ok((*header, grid, decoder.offset().0)),
+        (Some(header), Some(grid)) => Ok((header.clone(), grid, decoder.offset().0)),
         _ => Err(Failure::file(path, "the bytes end inside the header; a client knows nothing yet")),
     }
 }

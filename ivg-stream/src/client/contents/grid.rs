@@ -53,7 +53,7 @@ impl Contents for GridContents {
         loop {
             let offset = decoder.offset().0;
             if let Some(header) = decoder.header().filter(|header| header.data_offset == offset) {
-                self.state = Some((*header, None));
+                self.state = Some((header.clone(), None));
                 return Ok(Prefix::Whole(offset));
             }
             let rest = usize::try_from(offset).ok().and_then(|at| bytes.get(at..)).unwrap_or_default();
@@ -105,7 +105,8 @@ impl Contents for GridContents {
         let grid = match grid {
             Some(grid) => grid,
             None => {
-                let new = IrradianceGrid::with_limit(header.lattice, self.max_vertices);
+                let new =
+                    IrradianceGrid::with_limit(header.lattice, header.encoding.quantity(), self.max_vertices);
                 grid.insert(new.map_err(|error| Refusal::Final(error.to_string()))?)
             }
         };
