@@ -48,6 +48,7 @@ fn expected(document: &str, name: &str) -> String {
             let columns = ["name", "text", "maximum", "guaranteed", "default"];
             markdown(&of_format(rows("limits", "limit"), format), &columns)
         }
+        ["orders", order] => super::orders::markdown(order),
         ["registry", key] => {
             let columns: &[&str] = match key {
                 "encodings" => &["id", "name", "bytes", "status", "text"],
