@@ -1,7 +1,9 @@
 //! Numbers that the documents print, computed by this code.
 
 use super::read;
-use ivg_format::{Decoder, EncodeOptions, Encoding, Event, GridSource, Header, Lattice, Limits, encode};
+use ivg_format::{
+    Decoder, EncodeOptions, Encoding, Event, GridSource, Header, Lattice, Limits, RecordId, encode,
+};
 use ivg_wire::{Step, seal, seal_header, splitmix64};
 
 /// The numbers in a clause's text that are written as `0x…`.
@@ -72,4 +74,33 @@ fn scaled_vectors_are_rounded_once_to_nearest_with_ties_to_even() {
     assert_eq!(bits(0.5 * unit * (1.0 + f32::EPSILON), -49), 1);
     assert_eq!(bits(-0.0, -49), (-0.0f32).to_bits(), "the sign of a zero is kept");
     assert_eq!(scaled(1.5, 112), 1.5 * 2f32.powi(112));
+}
+
+#[test]
+fn the_file_of_the_overview_has_the_printed_sizes() {
+    let lattice = Lattice::new([32; 3], [0.0; 3], [1.0; 3]).unwrap();
+    let vectors = vec![[[[0.0; 3]; 3]; 6]; 32 * 32 * 32];
+    let validity = vec![255; vectors.len()];
+    let source = GridSource { validity: Some(&validity), ..GridSource::new(lattice, &vectors) };
+    let file = encode(&source, &EncodeOptions::new()).unwrap();
+    let Ok(Step::Consumed(_, header)) = Header::read(&file, &Limits::default()) else { panic!("a header") };
+    let bytes = |id| {
+        let range = header.record_range(id);
+        range.end - range.start
+    };
+    let text = read("ivg.md");
+    let (overview, _) = text.split_once("\n## 1. ").unwrap();
+    let sizes = [
+        (RecordId::Corners, "  348 B "),
+        (RecordId::Validity(7), " 8 × 5,644 B "),
+        (RecordId::Bundle(15), " 15 × 86,028 B "),
+        (RecordId::Bundle(16), " 85,692 B "),
+        (RecordId::End, " 20 B\n"),
+    ];
+    for (id, printed) in sizes {
+        let number = printed.rsplit('×').next().unwrap().trim().trim_end_matches(" B").replace(',', "");
+        assert!(overview.contains(printed), "{printed:?} is not printed");
+        assert_eq!(number.parse(), Ok(bytes(id)), "{id:?}");
+    }
+    assert_eq!((header.validity_records, header.bundle_count), (8, 16));
 }
