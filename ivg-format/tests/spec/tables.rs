@@ -49,6 +49,7 @@ fn expected(document: &str, name: &str) -> String {
             markdown(&of_format(rows("limits", "limit"), format), &columns)
         }
         ["orders", order] => super::orders::markdown(order),
+        ["values", quantiser] => super::values::markdown(quantiser),
         ["registry", key] => {
             let columns: &[&str] = match key {
                 "encodings" => &["id", "name", "bytes", "status", "text"],

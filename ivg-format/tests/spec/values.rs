@@ -1,10 +1,81 @@
 //! Numbers that the documents print, computed by this code.
 
-use super::read;
+use super::{read, rows};
+use ivg_format::quant::{direction, rgb9e5};
 use ivg_format::{
     Decoder, EncodeOptions, Encoding, Event, GridSource, Header, Lattice, Limits, RecordId, encode,
 };
 use ivg_wire::{Step, seal, seal_header, splitmix64};
+use std::fmt::Write;
+use toml::Value;
+
+fn integers(value: &Value) -> Vec<i64> {
+    value.as_array().unwrap().iter().map(|n| n.as_integer().unwrap()).collect()
+}
+
+fn strings(value: &Value) -> Vec<&str> {
+    value.as_array().unwrap().iter().map(|text| text.as_str().unwrap()).collect()
+}
+
+/// The table of one quantiser as it stands in the document.
+pub(super) fn markdown(quantiser: &str) -> String {
+    let list = |words: Vec<String>| words.join(", ");
+    let numbers =
+        |value: &Value| list(integers(value).iter().map(|n| n.to_string().replace('-', "−")).collect());
+    let bits = |value: &Value| list(integers(value).iter().map(|n| format!("0x{n:08X}")).collect());
+    let mut out = String::new();
+    match quantiser {
+        "rgb9e5" => out.push_str("| colour | code | |\n|---|---|---|\n"),
+        _ => {
+            out.push_str("| code | u, v | point | direction, as the bits of binary32 |\n|---|---|---|---|\n")
+        }
+    }
+    for row in rows("values", quantiser) {
+        let code = row["code"].as_integer().unwrap();
+        match quantiser {
+            "rgb9e5" => {
+                let colour = list(
+                    strings(&row["colour"])
+                        .iter()
+                        .map(|c| c.replace('-', "−").replace("nan", "NaN"))
+                        .collect(),
+                );
+                writeln!(out, "| {colour} | 0x{code:08X} | {} |", row["text"].as_str().unwrap()).unwrap();
+            }
+            _ => {
+                let (map, point, direction) =
+                    (numbers(&row["map"]), numbers(&row["point"]), bits(&row["direction"]));
+                writeln!(out, "| 0x{code:06X} | {map} | {point} | {direction} |").unwrap();
+            }
+        }
+    }
+    out
+}
+
+#[test]
+fn colours_have_the_printed_codes() {
+    let table = rows("values", "rgb9e5");
+    assert!(table.len() >= 8, "the table was not read");
+    for row in table {
+        let colour: Vec<f32> = strings(&row["colour"]).iter().map(|c| c.parse().unwrap()).collect();
+        let code = rgb9e5::encode([colour[0], colour[1], colour[2]]);
+        assert_eq!(Some(i64::from(code)), row["code"].as_integer(), "{colour:?} became {code:#010X}");
+    }
+}
+
+#[test]
+fn directions_have_the_printed_bits() {
+    let table = rows("values", "direction");
+    assert!(table.len() >= 7, "the table was not read");
+    for row in table {
+        let code = row["code"].as_integer().unwrap();
+        let map = integers(&row["map"]);
+        assert_eq!(code, (map[0] + 2047) + 4096 * (map[1] + 2047), "IVG-DIR-01");
+        let decoded = direction::decode_octahedral24(code as u32).unwrap();
+        let bits: Vec<i64> = decoded.iter().map(|c| i64::from(c.to_bits())).collect();
+        assert_eq!(bits, integers(&row["direction"]), "{code:#08X}");
+    }
+}
 
 /// The numbers in a clause's text that are written as `0x…`.
 fn hexadecimal(document: &str, clause: &str) -> Vec<u64> {
