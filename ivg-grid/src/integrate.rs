@@ -1,10 +1,12 @@
-//! Irradiance and irradiance vectors of a radiance function, by plain numerical integration.
+//! Irradiance, irradiance vectors and spherical harmonics of a radiance function, by plain numerical integration.
 //!
 //! Slow and obvious: the oracle that reconstruction, packing and bakes are measured against.
 
 use glam::{DVec3, Vec3};
+use ivg_format::RadianceHarmonics;
 
 use crate::HemisphereVectors;
+use crate::harmonics::{COEFFICIENTS, basis};
 
 /// `count` unit directions spread evenly over the sphere (Fibonacci lattice); each stands for a solid angle of
 /// `4π / count`.
@@ -41,6 +43,23 @@ pub fn hemisphere_vectors(directions: &[DVec3], radiance: impl Fn(DVec3) -> DVec
     }
     let solid_angle = solid_angle(directions);
     sums.map(|vectors| vectors.map(|vector| (vector * solid_angle).as_vec3().to_array()))
+}
+
+/// The spherical harmonics to degree 2 of a radiance function \[W/(m² sr)\]: the integrals of `radiance(w) Y(w)` over the
+/// sphere.
+///
+/// `directions` and `radiance` as in [`hemisphere_vectors`].
+#[must_use]
+pub fn radiance_harmonics(directions: &[DVec3], radiance: impl Fn(DVec3) -> DVec3) -> RadianceHarmonics {
+    let mut sums = [[0.0; COEFFICIENTS]; 3];
+    for &w in directions {
+        let (light, basis) = (radiance(w).to_array(), basis(w));
+        for (sums, light) in sums.iter_mut().zip(light) {
+            sums.iter_mut().zip(basis).for_each(|(sum, y)| *sum += light * y);
+        }
+    }
+    let solid_angle = solid_angle(directions);
+    sums.map(|channel| channel.map(|sum| (sum * solid_angle) as f32))
 }
 
 /// The irradiance \[W/m²\] of a surface with unit normal `n` under a radiance function: the integral of
