@@ -1,10 +1,11 @@
 //! Exact sums: light deposited as integers.
 //!
-//! A deposit is nine numbers (three channels times three axes), each at most [`MAX_QUANTA`] quanta. The quantum is
-//! fixed by the estimator: for track lengths it follows from the cell's diagonal, so that the longest stretch of a photon
-//! of full power is at most [`MAX_QUANTA`]. Every flight of a photon adds at most once to a bucket, and
-//! [`MAX_FLIGHTS`] bounds photons times flights, so that no sum exceeds 2²² · 2⁴⁰ = 2⁶² in size and i64 never
-//! overflows. Integer addition commutes: any number of threads, any order and any split gives the same sums.
+//! A deposit is a few numbers in a row (for irradiance vectors nine: three channels times three axes; for radiance 27: three
+//! channels times nine harmonics), each at most [`MAX_QUANTA`] quanta. The quantum is fixed by the estimator: for track
+//! lengths it follows from the cell's diagonal, so that the longest stretch of a photon of full power is at most
+//! [`MAX_QUANTA`]; components of a unit vector and spherical harmonics to degree 2 are at most 1. Every flight of a photon
+//! adds at most once to a number, and [`MAX_FLIGHTS`] bounds photons times flights, so that no sum exceeds
+//! 2²² · 2⁴⁰ = 2⁶² in size and i64 never overflows. Integer addition commutes: any number of threads, any order and any split gives the same sums.
 
 use std::sync::atomic::{AtomicI64, Ordering};
 
@@ -14,16 +15,14 @@ pub(crate) const MAX_QUANTA: f32 = 4_194_304.0;
 /// The most flights (photons times flights of a photon) that the sums hold.
 pub(crate) const MAX_FLIGHTS: u64 = 1 << 40;
 
-/// Numbers of a deposit.
-pub(crate) const NUMBERS: usize = 9;
-
 /// Sums that are kept once a thread as long as they all fit into this many bytes; beyond, threads share one.
 const PRIVATE_BYTES: usize = 512 << 20;
 
-/// Where deposits go: buckets of nine numbers.
+/// Where deposits go.
 pub(crate) trait Sums {
-    /// Adds to a bucket; each number in quanta, at most [`MAX_QUANTA`] in size, rounded to the nearest whole number.
-    fn add(&mut self, bucket: usize, quanta: &[f32; NUMBERS]);
+    /// Adds to the `N` sums from `first` on; each number in quanta, at most [`MAX_QUANTA`] in size, rounded to the nearest
+    /// whole number.
+    fn add<const N: usize>(&mut self, first: usize, quanta: &[f32; N]);
 }
 
 /// The sums of one thread.
@@ -32,8 +31,8 @@ pub(crate) struct Private(Vec<i64>);
 
 impl Sums for Private {
     #[inline]
-    fn add(&mut self, bucket: usize, quanta: &[f32; NUMBERS]) {
-        let sums = &mut self.0[bucket * NUMBERS..][..NUMBERS];
+    fn add<const N: usize>(&mut self, first: usize, quanta: &[f32; N]) {
+        let sums = &mut self.0[first..][..N];
         for (sum, &number) in sums.iter_mut().zip(quanta) {
             *sum += round(number);
         }
@@ -46,8 +45,8 @@ pub(crate) struct Shared<'a>(&'a [AtomicI64]);
 
 impl Sums for Shared<'_> {
     #[inline]
-    fn add(&mut self, bucket: usize, quanta: &[f32; NUMBERS]) {
-        let sums = &self.0[bucket * NUMBERS..][..NUMBERS];
+    fn add<const N: usize>(&mut self, first: usize, quanta: &[f32; N]) {
+        let sums = &self.0[first..][..N];
         for (sum, &number) in sums.iter().zip(quanta) {
             sum.fetch_add(round(number), Ordering::Relaxed);
         }
@@ -69,19 +68,18 @@ pub(crate) enum Store {
 }
 
 impl Store {
-    /// Sums of `buckets` buckets for `threads` threads.
-    pub(crate) fn new(buckets: usize, threads: usize) -> Self {
-        let len = buckets * NUMBERS;
+    /// `len` sums for `threads` threads.
+    pub(crate) fn new(len: usize, threads: usize) -> Self {
         if len.saturating_mul(size_of::<i64>()).saturating_mul(threads) <= PRIVATE_BYTES {
             Self::Private { len, total: std::sync::Mutex::new(vec![0; len]) }
         } else {
-            Self::shared(buckets)
+            Self::shared(len)
         }
     }
 
-    /// Sums of `buckets` buckets that all threads share.
-    pub(crate) fn shared(buckets: usize) -> Self {
-        Self::Shared((0..buckets * NUMBERS).map(|_| AtomicI64::new(0)).collect())
+    /// `len` sums that all threads share.
+    pub(crate) fn shared(len: usize) -> Self {
+        Self::Shared((0..len).map(|_| AtomicI64::new(0)).collect())
     }
 
     /// An empty set for one thread.
@@ -102,7 +100,7 @@ impl Store {
         }
     }
 
-    /// The sums, nine numbers a bucket.
+    /// The sums.
     pub(crate) fn into_sums(self) -> Vec<i64> {
         match self {
             Self::Private { total, .. } => {

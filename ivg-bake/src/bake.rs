@@ -2,15 +2,16 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
-use ivg_format::Lattice;
-use ivg_grid::IrradianceGrid;
+use ivg_format::{Lattice, Quantity};
+use ivg_grid::{GridValues, IrradianceGrid};
 use ivg_scene::{EffectPlan, FlatScene, Scene};
 
 use crate::accumulate::{MAX_FLIGHTS, Store};
 use crate::dual::Boxes;
 use crate::estimate::Estimate;
 use crate::estimate::face_crossing::FaceCrossing;
-use crate::estimate::track_length::TrackLength;
+use crate::estimate::track_length::{RadianceTracks, VectorTracks};
+use crate::region::Regions;
 use crate::stage::{Effects, Stage};
 use crate::trace::{Books, Tracer};
 use crate::validity::Surroundings;
@@ -20,8 +21,8 @@ use crate::{BakeError, BakeOptions, Estimator, Monitor};
 /// A baked grid and what the bake has to say about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakeResult {
-    /// Irradiance vectors of indirect light, validity and blocked edges; every vertex is received. An invalid vertex has
-    /// vectors of zero, which mean nothing.
+    /// Indirect light as the quantity asked for, validity and blocked edges; every vertex is received. An invalid vertex has
+    /// values of zero, which mean nothing.
     pub grid: IrradianceGrid,
     /// Figures of the bake.
     pub stats: BakeStats,
@@ -87,28 +88,12 @@ pub fn bake(
     let workers = Workers { threads: options.thread_count(), monitor, total_photons: options.photons };
     let surroundings = ready.surroundings(options.estimator, &workers)?;
     let tracer = ready.tracer(options.seed, plan.max_bounces);
-    let cells = ready.cells;
     let power = tracer.stage.emitters.total_power() / options.photons as f64;
-    let (vectors, books) = match options.estimator {
-        Estimator::TrackLength => {
-            let estimate = TrackLength::new(cells, &surroundings.regions);
-            run(&tracer, &estimate, options.photons, &workers)?.finish(&estimate, &ready, power)
-        }
-        Estimator::FaceCrossing => {
-            let estimate = FaceCrossing::unbiased(cells, &surroundings.regions);
-            run(&tracer, &estimate, options.photons, &workers)?.finish(&estimate, &ready, power)
-        }
-        Estimator::FaceCrossingRr6983 => {
-            let estimate = FaceCrossing::as_printed(cells);
-            run(&tracer, &estimate, options.photons, &workers)?.finish(&estimate, &ready, power)
-        }
-    };
-    let grid = IrradianceGrid::from_parts(
-        ready.lattice,
-        vectors,
-        surroundings.validity,
-        surroundings.blocked_edges,
-    )?;
+    let estimate = Chosen::new(options, ready.cells, &surroundings.regions)?;
+    let Traced { sums, books } = estimate.run(&tracer, options.photons, &workers)?;
+    let values = estimate.values(&sums, ready.cells.len(), power * ready.per_area);
+    let grid =
+        IrradianceGrid::from_parts(ready.lattice, values, surroundings.validity, surroundings.blocked_edges)?;
     let watts = |quanta: [i128; 3]| DVec3::from(quanta.map(|q| q as f64)) * (power / Books::QUANTA);
     let stats = BakeStats {
         photons: options.photons,
@@ -122,6 +107,58 @@ pub fn bake(
         lights: lights(scene, flat, Effects::of(plan)),
     };
     Ok(BakeResult { grid, stats })
+}
+
+/// The estimator of the options.
+#[derive(Debug)]
+pub(crate) enum Chosen<'a> {
+    Vectors(VectorTracks<'a>),
+    Radiance(RadianceTracks<'a>),
+    Faces(FaceCrossing<'a>),
+}
+
+impl<'a> Chosen<'a> {
+    pub(crate) fn new(options: &BakeOptions, cells: Boxes, regions: &'a Regions) -> Result<Self, BakeError> {
+        Ok(match (options.quantity, options.estimator) {
+            (Quantity::Vectors, Estimator::TrackLength) => Self::Vectors(VectorTracks::new(cells, regions)),
+            (Quantity::Radiance, Estimator::TrackLength) => {
+                Self::Radiance(RadianceTracks::new(cells, regions))
+            }
+            (Quantity::Vectors, Estimator::FaceCrossing) => {
+                Self::Faces(FaceCrossing::unbiased(cells, regions))
+            }
+            (Quantity::Vectors, Estimator::FaceCrossingRr6983) => {
+                Self::Faces(FaceCrossing::as_printed(cells))
+            }
+            (Quantity::Radiance, estimator) => return Err(BakeError::Quantity { estimator }),
+        })
+    }
+
+    /// Traces `photons` photons on all threads.
+    pub(crate) fn run(
+        &self,
+        tracer: &Tracer<'_>,
+        photons: u64,
+        workers: &Workers<'_>,
+    ) -> Result<Traced, BakeError> {
+        match self {
+            Self::Vectors(estimate) => run(tracer, estimate, photons, workers),
+            Self::Radiance(estimate) => run(tracer, estimate, photons, workers),
+            Self::Faces(estimate) => run(tracer, estimate, photons, workers),
+        }
+    }
+
+    /// The values of `count` vertices from all sums; `power` as in [`Estimate::value`].
+    fn values(&self, sums: &[i64], count: usize, power: f64) -> GridValues {
+        fn all<E: Estimate>(estimate: &E, sums: &[i64], count: usize, power: f64) -> Vec<E::Value> {
+            (0..count).map(|vertex| estimate.value(sums, vertex, power)).collect()
+        }
+        match self {
+            Self::Vectors(estimate) => all(estimate, sums, count, power).into(),
+            Self::Radiance(estimate) => all(estimate, sums, count, power).into(),
+            Self::Faces(estimate) => all(estimate, sums, count, power).into(),
+        }
+    }
 }
 
 /// A scene and a lattice ready for photons.
@@ -143,6 +180,9 @@ impl<'a> Ready<'a> {
     ) -> Result<Self, BakeError> {
         let (photons, bounces) = (options.photons, plan.max_bounces);
         let most = MAX_FLIGHTS / (u64::from(bounces) + 1);
+        if options.quantity == Quantity::Radiance && options.estimator != Estimator::TrackLength {
+            return Err(BakeError::Quantity { estimator: options.estimator });
+        }
         if photons == 0 {
             return Err(BakeError::NoPhotons);
         }
@@ -203,20 +243,6 @@ pub(crate) struct Traced {
     pub(crate) books: Books,
 }
 
-impl Traced {
-    fn finish(
-        self,
-        estimate: &impl Estimate,
-        ready: &Ready<'_>,
-        power: f64,
-    ) -> (Vec<ivg_grid::HemisphereVectors>, Books) {
-        let power = power * ready.per_area;
-        let vectors =
-            (0..ready.cells.len()).map(|vertex| estimate.vectors(&self.sums, vertex, power)).collect();
-        (vectors, self.books)
-    }
-}
-
 /// Traces `photons` photons on all threads.
 pub(crate) fn run(
     tracer: &Tracer<'_>,
@@ -224,7 +250,7 @@ pub(crate) fn run(
     photons: u64,
     workers: &Workers<'_>,
 ) -> Result<Traced, BakeError> {
-    let store = Store::new(estimate.buckets(), workers.threads);
+    let store = Store::new(estimate.sums(), workers.threads);
     let books = Mutex::new(Books::default());
     let done = AtomicU64::new(0);
     workers.run(photons.div_ceil(PHOTONS_A_PIECE), &done, |take| {

@@ -1,6 +1,8 @@
 use ivg_format::LatticeError;
 use ivg_grid::GridError;
 
+use crate::Estimator;
+
 /// Why a scene cannot be baked.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -20,6 +22,15 @@ pub enum BakeError {
         bounces: u32,
         /// The most photons that fit with that many reflections.
         most: u64,
+    },
+    /// An estimator that gives irradiance vectors only, asked for radiance harmonics.
+    #[error(
+        "{} gives irradiance vectors only; radiance harmonics need the estimator {}",
+        .estimator.name(), Estimator::TrackLength.name()
+    )]
+    Quantity {
+        /// The estimator asked for.
+        estimator: Estimator,
     },
     /// The bounds or vertex counts do not make a lattice.
     #[error("the grid is not possible: {0}")]

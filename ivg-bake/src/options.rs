@@ -1,11 +1,11 @@
 use glam::DVec3;
-use ivg_format::{Lattice, LatticeError};
+use ivg_format::{Lattice, LatticeError, Quantity};
 use ivg_scene::FlatScene;
 
 use crate::BakeError;
 use crate::stage::bounds;
 
-/// How the flights of photons are turned into irradiance vectors.
+/// How the flights of photons are turned into what the vertices hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Estimator {
     /// Length of the flights through each vertex's dual cell: unbiased for the mean over the cell, the least variance.
@@ -42,15 +42,18 @@ impl Estimator {
 /// What to bake, and with how much effort.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakeOptions {
-    /// Vertices along x, y and z, each at least 1. Time and memory grow with their product (576 bytes a vertex and
-    /// thread for track lengths while small, shared between threads beyond 512 MiB).
+    /// Vertices along x, y and z, each at least 1. Time and memory grow with their product (for track lengths 576 bytes a
+    /// vertex and thread, for radiance 216, while small; shared between threads beyond 512 MiB).
     pub dims: [u16; 3],
     /// First and last vertex in world space \[m\], taken as they are; `None`: see [`automatic_bounds`].
     pub bounds: Option<(DVec3, DVec3)>,
     /// Photons, at least 1. Noise falls with the square root.
     pub photons: u64,
-    /// How flights become irradiance vectors.
+    /// How flights become what the vertices hold.
     pub estimator: Estimator,
+    /// What the vertices hold: irradiance vectors, or spherical harmonics of the radiance, which only
+    /// [`Estimator::TrackLength`] gives.
+    pub quantity: Quantity,
     /// Seed of the random numbers. The same seed gives the same grid, bit for bit.
     pub seed: u64,
     /// Worker threads, at least 1; `None`: one for each core. The grid does not depend on it.
@@ -58,13 +61,14 @@ pub struct BakeOptions {
 }
 
 impl Default for BakeOptions {
-    /// 16 × 16 × 16 vertices around the scene, a million photons, track lengths.
+    /// 16 × 16 × 16 vertices around the scene, a million photons, track lengths to irradiance vectors.
     fn default() -> Self {
         Self {
             dims: [16; 3],
             bounds: None,
             photons: 1_000_000,
             estimator: Estimator::TrackLength,
+            quantity: Quantity::Vectors,
             seed: 1,
             threads: None,
         }

@@ -5,18 +5,15 @@
 
 use std::time::Instant;
 
-use ivg_grid::HemisphereVectors;
 use ivg_scene::{Cost, Effect, EffectPlan, FlatScene, Need, Scene};
 
 use crate::accumulate::Sums;
-use crate::bake::{Ready, Traced, run};
-use crate::estimate::face_crossing::FaceCrossing;
-use crate::estimate::track_length::TrackLength;
+use crate::bake::{Chosen, Ready, Traced, run};
 use crate::estimate::{Estimate, Flight};
 use crate::stage::{Effects, Stage};
 use crate::trace::{BOOKED_BOUNCES, Tracer};
 use crate::workers::Workers;
-use crate::{BakeError, BakeOptions, Estimator, Silent};
+use crate::{BakeError, BakeOptions, Silent};
 
 /// The share of the photons that a pilot traces: one in so many.
 const PHOTONS_SHARE: u64 = 100;
@@ -86,21 +83,8 @@ pub fn pilot(
 
     let tracer = ready.tracer(options.seed, MOST_BOUNCES);
     let (rays, ray_time) = timed(|| run(&tracer, &NoDeposits, photons, &workers))?;
-    let cells = ready.cells;
-    let (_, full_time) = match options.estimator {
-        Estimator::TrackLength => {
-            let estimate = TrackLength::new(cells, &surroundings.regions);
-            timed(|| run(&tracer, &estimate, photons, &workers))?
-        }
-        Estimator::FaceCrossing => {
-            let estimate = FaceCrossing::unbiased(cells, &surroundings.regions);
-            timed(|| run(&tracer, &estimate, photons, &workers))?
-        }
-        Estimator::FaceCrossingRr6983 => {
-            let estimate = FaceCrossing::as_printed(cells);
-            timed(|| run(&tracer, &estimate, photons, &workers))?
-        }
-    };
+    let estimate = Chosen::new(options, ready.cells, &surroundings.regions)?;
+    let (_, full_time) = timed(|| estimate.run(&tracer, photons, &workers))?;
     let books = &rays.books;
     let emitted = books.after_bounces[0].max(1) as f64;
     let energy_after_bounces: Vec<f64> = books.after_bounces.iter().map(|&e| e as f64 / emitted).collect();
@@ -174,15 +158,15 @@ fn timed(work: impl FnOnce() -> Result<Traced, BakeError>) -> Result<(Traced, f6
 struct NoDeposits;
 
 impl Estimate for NoDeposits {
-    fn buckets(&self) -> usize {
+    type Value = ();
+
+    fn sums(&self) -> usize {
         0
     }
 
     fn deposit(&self, _flight: &Flight, _sums: &mut impl Sums) {}
 
-    fn vectors(&self, _sums: &[i64], _vertex: usize, _power: f64) -> HemisphereVectors {
-        HemisphereVectors::default()
-    }
+    fn value(&self, _sums: &[i64], _vertex: usize, _power: f64) {}
 }
 
 #[cfg(test)]

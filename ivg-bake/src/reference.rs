@@ -4,12 +4,13 @@
 //! are sampled at every surface, and nothing is averaged over cells. Its results carry their standard error and depend
 //! on the seed alone, not on threads.
 
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
+use ivg_grid::harmonics::{COEFFICIENTS, basis};
 use ivg_scene::{Camera, FlatScene, Scene};
 
-use crate::estimate::gather::Mean;
+use crate::estimate::gather::{Batches, Mean};
 use crate::overlap::closest_point;
 use crate::sampling::rng::{Purpose, Stream};
 use crate::stage::{Effects, Stage};
@@ -50,6 +51,22 @@ pub struct GatheredIrradiance {
     /// Its standard error.
     pub standard_error: DVec3,
 }
+
+/// Indirect light at a point, all of it gathered from the same paths.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GatheredLight {
+    /// Irradiance vectors, `[hemisphere][rgb][xyz]` \[W/m²\].
+    pub vectors: [[[f64; 3]; 3]; 6],
+    /// Spherical harmonics of the radiance to degree 2, `[rgb][coefficient]` \[W/(m² sr)\].
+    pub radiance: [[f64; COEFFICIENTS]; 3],
+    /// Irradiance for each of the normals asked for \[W/m²\].
+    pub irradiance: Vec<DVec3>,
+    /// Standard error of the irradiance for each of the normals \[W/m²\].
+    pub irradiance_error: Vec<DVec3>,
+}
+
+/// Batches that the paths of a point are divided into: the standard error is that of the means of so many.
+const BATCHES: u32 = 16;
 
 /// Which light a picture shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,6 +152,40 @@ impl<'a> Oracle<'a> {
         })
     }
 
+    /// The indirect light at points in world space \[m\]: irradiance vectors, spherical harmonics and the irradiance for each of
+    /// some unit `normals`, from the same paths.
+    ///
+    /// The paths are divided into 16 batches (so their number is rounded up to a multiple of 16), in each of which the
+    /// first directions are spread evenly over the sphere.
+    ///
+    /// # Errors
+    ///
+    /// [`BakeError::Cancelled`]; the monitor's progress counts points.
+    pub fn light(
+        &self,
+        points: &[DVec3],
+        normals: &[Vec3],
+        sampling: Sampling,
+        monitor: &dyn Monitor,
+    ) -> Result<Vec<GatheredLight>, BakeError> {
+        let normals: Vec<DVec3> = normals.iter().map(|n| n.as_dvec3()).collect();
+        let count = sampling.paths.div_ceil(BATCHES);
+        self.points(points.len(), sampling, monitor, |index| {
+            let point = self.stage.space.to_bake(points[index]);
+            let mut batches = Batches::new(VECTOR_NUMBERS + RADIANCE_NUMBERS + 3 * normals.len());
+            for batch in 0..BATCHES {
+                let first = stream(sampling, index, batch * count);
+                let [_, _, u, v] = first.uniforms(0, Purpose::Gather);
+                batches.add(count, |path, sums| {
+                    let stream = stream(sampling, index, batch * count + path);
+                    let (w, radiance) = self.stage.sample_even(point, (path, count), [u, v], &stream);
+                    add_light(sums, w, radiance * (4.0 * PI), &normals);
+                });
+            }
+            gathered(&batches)
+        })
+    }
+
     /// Distance from a point in world space to the nearest surface \[m\]; infinite without triangles. Looks at every
     /// triangle.
     #[must_use]
@@ -211,6 +262,47 @@ impl<'a> Oracle<'a> {
             monitor.progress(done, count as u64);
             value
         })
+    }
+}
+
+/// Numbers of the irradiance vectors and of the harmonics of a point.
+const VECTOR_NUMBERS: usize = 54;
+const RADIANCE_NUMBERS: usize = 3 * COEFFICIENTS;
+
+/// Adds light from direction `w` \[W/m²\] to the numbers of a point: vectors, harmonics, irradiance for each normal.
+fn add_light(sums: &mut [f64], w: DVec3, light: DVec3, normals: &[DVec3]) {
+    let (vectors, rest) = sums.split_at_mut(VECTOR_NUMBERS);
+    let (harmonics, irradiance) = rest.split_at_mut(RADIANCE_NUMBERS);
+    for axis in 0..3 {
+        if w[axis] != 0.0 {
+            let hemisphere = 2 * axis + usize::from(w[axis] < 0.0);
+            for (n, sum) in vectors[9 * hemisphere..][..9].iter_mut().enumerate() {
+                *sum += light[n / 3] * w[n % 3];
+            }
+        }
+    }
+    let basis = basis(w);
+    for (n, sum) in harmonics.iter_mut().enumerate() {
+        *sum += light[n / COEFFICIENTS] * basis[n % COEFFICIENTS];
+    }
+    for (sums, normal) in irradiance.chunks_exact_mut(3).zip(normals) {
+        let cos = normal.dot(w).max(0.0);
+        sums.iter_mut().zip(light.to_array()).for_each(|(sum, light)| *sum += light * cos);
+    }
+}
+
+fn gathered(batches: &Batches) -> GatheredLight {
+    let mean = batches.mean();
+    let (vectors, rest) = mean.split_at(VECTOR_NUMBERS);
+    let (harmonics, irradiance) = rest.split_at(RADIANCE_NUMBERS);
+    let triples = |numbers: &[f64]| numbers.chunks_exact(3).map(DVec3::from_slice).collect();
+    GatheredLight {
+        vectors: core::array::from_fn(|h| {
+            core::array::from_fn(|c| core::array::from_fn(|k| vectors[9 * h + 3 * c + k]))
+        }),
+        radiance: core::array::from_fn(|c| core::array::from_fn(|n| harmonics[COEFFICIENTS * c + n])),
+        irradiance: triples(irradiance),
+        irradiance_error: triples(&batches.standard_error()[VECTOR_NUMBERS + RADIANCE_NUMBERS..]),
     }
 }
 

@@ -1,4 +1,4 @@
-use super::{MAX_FLIGHTS, MAX_QUANTA, NUMBERS, Store, Sums, round};
+use super::{MAX_FLIGHTS, MAX_QUANTA, Store, Sums, round};
 
 #[test]
 fn rounding_is_to_the_nearest_over_the_whole_range() {
@@ -21,18 +21,18 @@ fn the_most_flights_of_the_largest_deposits_do_not_overflow() {
 
 #[test]
 fn shared_and_private_sums_are_the_same() {
-    let deposits: Vec<(usize, [f32; NUMBERS])> = (0..1000)
-        .map(|n| (n * 7 % 5, core::array::from_fn(|k| ((n * 31 + k * 17) % 1000) as f32 * 3.3 - 1500.0)))
+    let deposits: Vec<(usize, [f32; 9])> = (0..1000)
+        .map(|n| (n * 7 % 5 * 9, core::array::from_fn(|k| ((n * 31 + k * 17) % 1000) as f32 * 3.3 - 1500.0)))
         .collect();
-    let shared = Store::shared(5);
-    let private = Store::new(5, 2);
+    let shared = Store::shared(45);
+    let private = Store::new(45, 2);
     assert!(matches!(private, Store::Private { .. }));
     let Store::Shared(sums) = &shared else { panic!("not shared") };
     let Store::Private { len, total } = &private else { panic!("not private") };
     let (mut a, mut b) = (Store::private(*len), Store::private(*len));
-    for (n, (bucket, quanta)) in deposits.iter().enumerate() {
-        Store::view(sums).add(*bucket, quanta);
-        if n % 3 == 0 { a.add(*bucket, quanta) } else { b.add(*bucket, quanta) }
+    for (n, (first, quanta)) in deposits.iter().enumerate() {
+        Store::view(sums).add(*first, quanta);
+        if n % 3 == 0 { a.add(*first, quanta) } else { b.add(*first, quanta) }
     }
     Store::merge(total, &b);
     Store::merge(total, &a);
@@ -43,5 +43,5 @@ fn shared_and_private_sums_are_the_same() {
 
 #[test]
 fn large_grids_share_one_set() {
-    assert!(matches!(Store::new(64 * 64 * 64 * 8, 16), Store::Shared(_)));
+    assert!(matches!(Store::new(64 * 64 * 64 * 8 * 9, 16), Store::Shared(_)));
 }

@@ -1,6 +1,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DAffine3, DVec3, Vec3};
+use ivg_grid::{Quantity, harmonics};
 use ivg_scene::{FlatScene, LightKind, Scene};
 
 use super::bake;
@@ -32,13 +33,103 @@ fn baked(scene: &(Scene, FlatScene), options: &BakeOptions) -> BakeResult {
 #[test]
 fn one_two_and_five_threads_give_the_same_result() {
     let scene = room();
-    for estimator in Estimator::ALL {
+    let vectors = Estimator::ALL.map(|estimator| (estimator, Quantity::Vectors));
+    for (estimator, quantity) in vectors.into_iter().chain([(Estimator::TrackLength, Quantity::Radiance)]) {
         let [one, two, five] = [1, 2, 5].map(|threads| {
-            baked(&scene, &BakeOptions { estimator, threads: Some(threads), ..options(20_000) })
+            baked(&scene, &BakeOptions { estimator, quantity, threads: Some(threads), ..options(20_000) })
         });
         assert!(one.grid.largest_component() > 0.0);
-        assert_eq!(one, two, "{estimator:?}");
-        assert_eq!(one, five, "{estimator:?}");
+        assert_eq!(one, two, "{estimator:?} {quantity:?}");
+        assert_eq!(one, five, "{estimator:?} {quantity:?}");
+    }
+}
+
+#[test]
+fn radiance_and_vectors_are_baked_from_the_same_photons() {
+    let scene = room();
+    let vectors = baked(&scene, &options(50_000));
+    let radiance = baked(&scene, &BakeOptions { quantity: Quantity::Radiance, ..options(50_000) });
+    assert_eq!(vectors.stats, radiance.stats);
+    assert_eq!(vectors.grid.validity(), radiance.grid.validity());
+    // The sum of opposite hemispheres is the net flux, the integral of L w: 2 √(π/3) times the coefficients of degree 1.
+    let factor = (4.0 / 3.0 * std::f64::consts::PI).sqrt() as f32;
+    for (vectors, radiance) in vectors.grid.vectors().iter().zip(radiance.grid.radiance()) {
+        for channel in 0..3 {
+            for (component, coefficient) in [3, 1, 2].into_iter().enumerate() {
+                let flux = vectors[0][channel][component] + vectors[1][channel][component];
+                let found = factor * radiance[channel][coefficient];
+                // Some 50,000 deposits a vertex rounded to 2⁻²² of what a whole photon can add, and a few roundings of
+                // vectors of up to 10 W/m² that cancel.
+                assert!((flux - found).abs() < 2e-5, "{flux} {found}");
+            }
+        }
+    }
+}
+
+/// Light is even, so that averaging over cells changes nothing and what is left is noise, whose size the spread over eight
+/// seeds tells: eight standard errors, as in `cases`. L = ρ / (1 − ρ), so that the first coefficient is 2√π L and all
+/// others vanish.
+#[test]
+fn radiance_of_a_furnace_is_its_first_coefficient() {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(0.6, 1.0, false);
+    builder.cuboid(Vec3::ZERO, Vec3::ONE, wall, true);
+    let scene = builder.build();
+    let means: Vec<[f64; 9]> = (1..=8)
+        .map(|seed| {
+            let bounds = Some((DVec3::splat(0.2), DVec3::splat(0.8)));
+            let quantity = Quantity::Radiance;
+            let options = BakeOptions { dims: [4; 3], bounds, quantity, seed, ..options(20_000) };
+            let result = bake(&scene.0, &scene.1, &plan(&scene.0, 1000), &options, &Silent).unwrap();
+            let all = result.grid.radiance();
+            core::array::from_fn(|n| all.iter().map(|r| f64::from(r[1][n])).sum::<f64>() / all.len() as f64)
+        })
+        .collect();
+    for n in 0..9 {
+        let mean = means.iter().map(|m| m[n]).sum::<f64>() / 8.0;
+        let variance = means.iter().map(|m| (m[n] - mean).powi(2)).sum::<f64>() / 7.0;
+        let expected = if n == 0 { 2.0 * std::f64::consts::PI.sqrt() * 0.6 / 0.4 } else { 0.0 };
+        let bound = 8.0 * (variance / 8.0).sqrt();
+        assert!((mean - expected).abs() < bound, "coefficient {n}: {mean} for {expected} within {bound}");
+        assert!(bound < 0.04 * 5.3, "coefficient {n}: the bound {bound} means something");
+    }
+}
+
+/// A lit wall 4 m away and 0.2 m wide: nearly a single direction, for which the ratios to the first coefficient are
+/// those of the basis functions. From a corner of the cell to one of the wall is 3 degrees, which changes them by less than 0.01.
+#[test]
+fn light_from_one_side_has_the_signs_of_that_side() {
+    for (axis, ones, squares) in [(0, 3, 0.968), (1, 1, -0.968), (2, 2, 0.0)] {
+        for side in [1.0_f32, -1.0] {
+            let mut builder = SceneBuilder::default();
+            let white = builder.material(0.8, 0.0, true);
+            let [along, u, v] = [0, 1, 2].map(|n| Vec3::AXES[(axis + n) % 3] * 0.2);
+            builder.quad(along * (20.0 * side) - (u + v) * 0.5, u, v, white);
+            let direction = along.normalize() * side;
+            builder.light(LightKind::Spot {
+                position: DVec3::ZERO,
+                direction,
+                intensity: Vec3::ONE,
+                inner_angle: 0.02,
+                outer_angle: 0.03,
+            });
+            let (scene, flat) = builder.build();
+            let options = BakeOptions {
+                dims: [1; 3],
+                bounds: Some((DVec3::splat(-0.05), DVec3::splat(0.05))),
+                quantity: Quantity::Radiance,
+                ..options(200_000)
+            };
+            let result = bake(&scene, &flat, &plan(&scene, 4), &options, &Silent).unwrap();
+            let radiance = result.grid.radiance()[0];
+            let [first, ..] = radiance[0];
+            assert!(first > 0.0);
+            let ratio = |n: usize| radiance[0][n] / first;
+            assert!((ratio(ones) - side * 3.0_f32.sqrt()).abs() < 0.01, "{axis} {side}: {radiance:?}");
+            assert!((ratio(8) - 2.0 * squares).abs() < 0.01, "{axis} {side}: {radiance:?}");
+            let facing = harmonics::irradiance(&radiance, direction).x;
+            assert!(facing > 0.0 && harmonics::irradiance(&radiance, -direction).x < 0.1 * facing);
+        }
     }
 }
 
@@ -222,6 +313,13 @@ fn unusable_input_is_an_error_that_names_it() {
     assert!(matches!(fails(&scene, &flat, &huge), BakeError::Grid(_)));
     let upside_down = BakeOptions { bounds: Some((DVec3::ONE, DVec3::ZERO)), ..options(10) };
     assert!(matches!(fails(&scene, &flat, &upside_down), BakeError::Lattice(_)));
+
+    for estimator in [Estimator::FaceCrossing, Estimator::FaceCrossingRr6983] {
+        let quantity = Quantity::Radiance;
+        let error = fails(&scene, &flat, &BakeOptions { estimator, quantity, ..options(10) });
+        assert_eq!(error, BakeError::Quantity { estimator });
+        assert!(error.to_string().contains("track-length"), "{error}");
+    }
 
     let dark = {
         let mut scene = scene.clone();

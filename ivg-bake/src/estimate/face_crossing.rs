@@ -11,8 +11,8 @@
 use glam::Vec3;
 use ivg_grid::HemisphereVectors;
 
-use super::{Estimate, Flight};
-use crate::accumulate::{MAX_QUANTA, NUMBERS, Sums};
+use super::{Estimate, Flight, NUMBERS};
+use crate::accumulate::{MAX_QUANTA, Sums};
 use crate::dual::Boxes;
 use crate::region::{Region, Regions, SUB};
 
@@ -107,8 +107,10 @@ impl<'a> FaceCrossing<'a> {
 }
 
 impl Estimate for FaceCrossing<'_> {
-    fn buckets(&self) -> usize {
-        self.cells.len() * HEMISPHERES
+    type Value = HemisphereVectors;
+
+    fn sums(&self) -> usize {
+        self.cells.len() * HEMISPHERES * NUMBERS
     }
 
     #[inline]
@@ -128,7 +130,7 @@ impl Estimate for FaceCrossing<'_> {
                 if t > 0.0 && t < flight.length {
                     let place = flight.origin + flight.direction * t;
                     if let Some(vertex) = self.vertex(place, axis, at) {
-                        sums.add(vertex * HEMISPHERES + hemisphere, &quanta);
+                        sums.add((vertex * HEMISPHERES + hemisphere) * NUMBERS, &quanta);
                     }
                 }
             };
@@ -142,7 +144,7 @@ impl Estimate for FaceCrossing<'_> {
         }
     }
 
-    fn vectors(&self, sums: &[i64], vertex: usize, power: f64) -> HemisphereVectors {
+    fn value(&self, sums: &[i64], vertex: usize, power: f64) -> HemisphereVectors {
         core::array::from_fn(|hemisphere| {
             let axis = hemisphere / 2;
             let across = [(axis + 1) % 3, (axis + 2) % 3].map(|a| f64::from(self.cells.step[a]));

@@ -54,6 +54,55 @@ impl<const N: usize> Mean<N> {
     }
 }
 
+/// Sums of an array of numbers whose length is known when the program runs, kept in a few batches.
+///
+/// A batch is a set of paths whose first directions are spread evenly (and turned at random), which makes its mean far better
+/// than that of as many independent paths. Batches are independent of each other, so the spread of their means tells the
+/// standard error.
+#[derive(Clone, Debug)]
+pub(crate) struct Batches {
+    numbers: usize,
+    /// Means of the finished batches, one after the other.
+    means: Vec<f64>,
+}
+
+impl Batches {
+    /// For arrays of `numbers` numbers.
+    pub(crate) fn new(numbers: usize) -> Self {
+        Self { numbers, means: Vec::new() }
+    }
+
+    /// Adds a batch of `count` samples; `sample` adds the one of its index to the sums it is given.
+    pub(crate) fn add(&mut self, count: u32, mut sample: impl FnMut(u32, &mut [f64])) {
+        let mut sums = vec![0.0; self.numbers];
+        (0..count).for_each(|index| sample(index, &mut sums));
+        self.means.extend(sums.iter().map(|sum| sum / f64::from(count)));
+    }
+
+    /// The mean.
+    pub(crate) fn mean(&self) -> Vec<f64> {
+        let batches = (self.means.len() / self.numbers) as f64;
+        let mut mean = vec![0.0; self.numbers];
+        for batch in self.means.chunks_exact(self.numbers) {
+            mean.iter_mut().zip(batch).for_each(|(mean, x)| *mean += x / batches);
+        }
+        mean
+    }
+
+    /// The standard error of the mean; needs two batches.
+    pub(crate) fn standard_error(&self) -> Vec<f64> {
+        let batches = (self.means.len() / self.numbers) as f64;
+        let mut squares = vec![0.0; self.numbers];
+        let mean = self.mean();
+        for batch in self.means.chunks_exact(self.numbers) {
+            for ((square, x), mean) in squares.iter_mut().zip(batch).zip(&mean) {
+                *square += (x - mean).powi(2) / (batches * (batches - 1.0));
+            }
+        }
+        squares.into_iter().map(f64::sqrt).collect()
+    }
+}
+
 impl Stage<'_> {
     /// One sample of the indirect irradiance vectors at a point of bake space, `[hemisphere][rgb][xyz]` flattened \[W/m²\]:
     /// a direction even over the sphere, of the light along it all but the emission of the first surface.
@@ -68,6 +117,25 @@ impl Stage<'_> {
             let inside = if hemisphere % 2 == 0 { axis > 0.0 } else { axis < 0.0 };
             if inside { radiance[channel] * w[component] } else { 0.0 }
         })
+    }
+
+    /// The radiance of one path of a batch of `count` from a point of bake space \[W/(m² sr)\], and where it comes from.
+    ///
+    /// The first directions of a batch are a Fibonacci lattice; `turn`, two uniform numbers, moves it so that each path by
+    /// itself is even over the sphere.
+    pub(crate) fn sample_even(
+        &self,
+        point: Vec3,
+        (path, count): (u32, u32),
+        turn: [f32; 2],
+        stream: &Stream,
+    ) -> (DVec3, DVec3) {
+        // The golden ratio's fraction: successive directions never line up.
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let polar = (f64::from(path) + f64::from(turn[0])) / f64::from(count);
+        let round = (f64::from(path) * GOLDEN + f64::from(turn[1])).fract();
+        let direction = hemisphere::sphere([polar as f32, round as f32]);
+        (direction.as_dvec3(), self.radiance(point, direction, stream, false))
     }
 
     /// One sample of the indirect irradiance of a surface with unit `normal` at a point of bake space \[W/m²\].

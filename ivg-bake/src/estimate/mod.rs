@@ -1,13 +1,15 @@
-//! From flights of photons to irradiance vectors.
+//! From flights of photons to what the vertices hold: irradiance vectors, or spherical harmonics of the radiance.
 
 pub(crate) mod face_crossing;
 pub(crate) mod gather;
 pub(crate) mod track_length;
 
 use glam::Vec3;
-use ivg_grid::HemisphereVectors;
 
-use crate::accumulate::{NUMBERS, Sums};
+use crate::accumulate::Sums;
+
+/// Numbers of a flight's deposit of irradiance vectors: three channels times three axes.
+pub(crate) const NUMBERS: usize = 9;
 
 /// A straight flight of a photon between two surfaces, or beyond the last.
 #[derive(Clone, Copy, Debug)]
@@ -31,15 +33,17 @@ impl Flight {
     }
 }
 
-/// How the flights of photons become irradiance vectors.
+/// How the flights of photons become what the vertices hold.
 pub(crate) trait Estimate: Sync {
-    /// Number of buckets of deposits.
-    fn buckets(&self) -> usize;
+    /// What a vertex holds.
+    type Value;
+
+    /// Number of sums.
+    fn sums(&self) -> usize;
 
     /// Deposits a flight.
     fn deposit(&self, flight: &Flight, sums: &mut impl Sums);
 
-    /// The vectors of a vertex from the sums of all buckets; `power` is what a photon of share 1 carries
-    /// \[W\], lengths are in bake units.
-    fn vectors(&self, sums: &[i64], vertex: usize, power: f64) -> HemisphereVectors;
+    /// The value of a vertex from all sums; `power` is what a photon of share 1 carries \[W\], lengths are in bake units.
+    fn value(&self, sums: &[i64], vertex: usize, power: f64) -> Self::Value;
 }

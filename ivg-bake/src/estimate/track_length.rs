@@ -1,66 +1,46 @@
-//! The track-length estimator: what a photon adds to a vertex is in proportion to how far it flies through its dual cell.
+//! The track-length estimators: what a photon adds to a vertex is in proportion to how far it flies through its dual cell.
 //!
 //! The radiance from direction w, averaged over a volume V, is the power times length of all flights along −w in it,
-//! divided by V. A flight of power φ and length l in the region of a vertex adds φ l w / V to the three hemispheres
-//! that contain w. No cosine is divided by, so that grazing flights do no harm, and every flight counts in every
-//! region that it passes.
-//!
-//! Which three hemispheres contain w follows from the signs of its components alone, so deposits go to one of eight
-//! octants a vertex, and each hemisphere is the sum of four octants at the end.
+//! divided by V. So a flight of power φ and length l in the region of a vertex adds φ l w / V to the three irradiance vectors
+//! whose hemispheres contain w ([`VectorTracks`]), and φ l Y(w) / V to the coefficient of the spherical harmonic Y of the
+//! radiance ([`RadianceTracks`]). No cosine is divided by, so that grazing flights do no harm, and every flight counts in
+//! every region that it passes.
 
-use ivg_grid::HemisphereVectors;
+use ivg_format::{HemisphereVectors, RadianceHarmonics};
+use ivg_grid::harmonics::{COEFFICIENTS, basis};
 
-use super::{Estimate, Flight};
-use crate::accumulate::{MAX_QUANTA, NUMBERS, Sums};
+use super::{Estimate, Flight, NUMBERS};
+use crate::accumulate::{MAX_QUANTA, Sums};
 use crate::dual::Boxes;
 use crate::region::{Region, Regions};
 
-const OCTANTS: usize = 8;
-
 /// Stretches of a flight that are collected before they are added. Waiting for memory is most of the cost of a bake; many
-/// short additions in a row let the processor wait for several at once. For the same reason the buckets of an octant lie
-/// together: a flight stays in one octant.
+/// short additions in a row let the processor wait for several at once.
 const STRETCHES: usize = 64;
 
 /// Roundings in cutting a flight can make a stretch this much longer than the diagonal.
 const DIAGONAL_MARGIN: f32 = 1.001;
 
-/// The estimator over the dual cells of a lattice.
+/// The flights through the dual cells of a lattice.
 #[derive(Debug)]
-pub(crate) struct TrackLength<'a> {
+struct Tracks<'a> {
     cells: Boxes,
     regions: &'a Regions,
     /// Bake units a quantum: a power of two.
     quantum: f64,
 }
 
-impl<'a> TrackLength<'a> {
-    pub(crate) fn new(cells: Boxes, regions: &'a Regions) -> Self {
+impl<'a> Tracks<'a> {
+    fn new(cells: Boxes, regions: &'a Regions) -> Self {
         let exponent = libm::ilogbf(cells.diagonal() * DIAGONAL_MARGIN) + 1;
         Self { cells, regions, quantum: libm::scalbn(1.0, exponent) / f64::from(MAX_QUANTA) }
     }
-}
 
-impl Estimate for TrackLength<'_> {
-    fn buckets(&self) -> usize {
-        self.cells.len() * OCTANTS
-    }
-
+    /// Calls `add` with the vertex and the length \[bake units\] of each stretch of a flight that counts.
     #[inline]
-    fn deposit(&self, flight: &Flight, sums: &mut impl Sums) {
-        let per_length = flight.numbers((1.0 / self.quantum) as f32);
-        let towards = -flight.direction;
-        let octant = usize::from(towards.x < 0.0)
-            | usize::from(towards.y < 0.0) << 1
-            | usize::from(towards.z < 0.0) << 2;
-        let first = octant * self.cells.len();
+    fn for_each_stretch(&self, flight: &Flight, mut add: impl FnMut(usize, f32)) {
         let mut stretches = [(0usize, 0f32); STRETCHES];
         let mut waiting = 0;
-        let mut add = |stretches: &[(usize, f32)]| {
-            for &(bucket, length) in stretches {
-                sums.add(bucket, &per_length.map(|number| number * length));
-            }
-        };
         self.cells.walk(flight.origin, flight.direction, 0.0, flight.length, |cell, from, to| {
             let index = self.cells.index(cell);
             let length = match self.regions.get(index) {
@@ -68,24 +48,63 @@ impl Estimate for TrackLength<'_> {
                 region => region.length(&self.cells, cell, flight.origin, flight.direction, from, to),
             };
             if length > 0.0 {
-                stretches[waiting] = (first + index, length);
+                stretches[waiting] = (index, length);
                 waiting += 1;
                 if waiting == STRETCHES {
-                    add(&stretches);
+                    stretches.iter().for_each(|&(index, length)| add(index, length));
                     waiting = 0;
                 }
             }
         });
-        add(&stretches[..waiting]);
+        stretches[..waiting].iter().for_each(|&(index, length)| add(index, length));
     }
 
-    fn vectors(&self, sums: &[i64], vertex: usize, power: f64) -> HemisphereVectors {
+    /// What a sum of quanta is multiplied by; none where nothing counts.
+    fn scale(&self, vertex: usize, power: f64) -> Option<f64> {
         let share = self.regions.get(vertex).share();
-        if share == 0.0 {
-            return HemisphereVectors::default();
-        }
-        let scale = power * self.quantum / (self.cells.volume() * share);
-        let number = |octant: usize, n: usize| sums[(octant * self.cells.len() + vertex) * NUMBERS + n];
+        (share > 0.0).then(|| power * self.quantum / (self.cells.volume() * share))
+    }
+}
+
+const OCTANTS: usize = 8;
+
+/// Track lengths to irradiance vectors.
+///
+/// Which three hemispheres contain w follows from the signs of its components alone, so deposits go to one of eight
+/// octants a vertex, and each hemisphere is the sum of four octants at the end. The sums of an octant lie together: a flight
+/// stays in one octant.
+#[derive(Debug)]
+pub(crate) struct VectorTracks<'a>(Tracks<'a>);
+
+impl<'a> VectorTracks<'a> {
+    pub(crate) fn new(cells: Boxes, regions: &'a Regions) -> Self {
+        Self(Tracks::new(cells, regions))
+    }
+}
+
+impl Estimate for VectorTracks<'_> {
+    type Value = HemisphereVectors;
+
+    fn sums(&self) -> usize {
+        self.0.cells.len() * OCTANTS * NUMBERS
+    }
+
+    #[inline]
+    fn deposit(&self, flight: &Flight, sums: &mut impl Sums) {
+        let per_length = flight.numbers((1.0 / self.0.quantum) as f32);
+        let towards = -flight.direction;
+        let octant = usize::from(towards.x < 0.0)
+            | usize::from(towards.y < 0.0) << 1
+            | usize::from(towards.z < 0.0) << 2;
+        let first = octant * self.0.cells.len();
+        self.0.for_each_stretch(flight, |vertex, length| {
+            sums.add((first + vertex) * NUMBERS, &per_length.map(|number| number * length));
+        });
+    }
+
+    fn value(&self, sums: &[i64], vertex: usize, power: f64) -> HemisphereVectors {
+        let Some(scale) = self.0.scale(vertex, power) else { return HemisphereVectors::default() };
+        let number = |octant: usize, n: usize| sums[(octant * self.0.cells.len() + vertex) * NUMBERS + n];
         core::array::from_fn(|hemisphere| {
             let (axis, negative) = (hemisphere / 2, hemisphere % 2);
             core::array::from_fn(|channel| {
@@ -97,6 +116,48 @@ impl Estimate for TrackLength<'_> {
                     (sum as f64 * scale) as f32
                 })
             })
+        })
+    }
+}
+
+/// Numbers of a deposit of radiance: three channels times nine harmonics.
+const RADIANCE_NUMBERS: usize = 3 * COEFFICIENTS;
+
+/// Track lengths to spherical harmonics of the radiance.
+#[derive(Debug)]
+pub(crate) struct RadianceTracks<'a>(Tracks<'a>);
+
+impl<'a> RadianceTracks<'a> {
+    pub(crate) fn new(cells: Boxes, regions: &'a Regions) -> Self {
+        Self(Tracks::new(cells, regions))
+    }
+}
+
+impl Estimate for RadianceTracks<'_> {
+    type Value = RadianceHarmonics;
+
+    fn sums(&self) -> usize {
+        self.0.cells.len() * RADIANCE_NUMBERS
+    }
+
+    #[inline]
+    fn deposit(&self, flight: &Flight, sums: &mut impl Sums) {
+        // |Y| <= √(5/4π) < 1, so that a number is at most the length times the power, as for the vectors.
+        let basis = basis((-flight.direction).as_dvec3()).map(|y| (y / self.0.quantum) as f32);
+        let mut per_length = [0.0; RADIANCE_NUMBERS];
+        for (numbers, power) in per_length.chunks_exact_mut(COEFFICIENTS).zip(flight.power.to_array()) {
+            numbers.iter_mut().zip(basis).for_each(|(number, y)| *number = y * power);
+        }
+        self.0.for_each_stretch(flight, |vertex, length| {
+            sums.add(vertex * RADIANCE_NUMBERS, &per_length.map(|number| number * length));
+        });
+    }
+
+    fn value(&self, sums: &[i64], vertex: usize, power: f64) -> RadianceHarmonics {
+        let Some(scale) = self.0.scale(vertex, power) else { return RadianceHarmonics::default() };
+        let numbers = &sums[vertex * RADIANCE_NUMBERS..][..RADIANCE_NUMBERS];
+        core::array::from_fn(|channel| {
+            core::array::from_fn(|n| (numbers[channel * COEFFICIENTS + n] as f64 * scale) as f32)
         })
     }
 }

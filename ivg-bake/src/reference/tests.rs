@@ -75,6 +75,53 @@ fn parallel_plates_have_their_closed_form() {
     );
 }
 
+/// All that `light` gathers, in closed form: in the furnace every direction is as bright, so that harmonics and vectors of
+/// evenly spread directions are exact but for the rule of integration and the noise of the paths beyond.
+#[test]
+fn everything_gathered_at_once_has_its_closed_form() {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(0.5, 1.0, false);
+    builder.cuboid(Vec3::ZERO, Vec3::new(1.0, 2.0, 0.7), wall, true);
+    let (scene, flat) = builder.build();
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    let normals = [Vec3::X, Vec3::NEG_Z, Vec3::new(2.0, -3.0, 6.0) / 7.0];
+    let light = |threads| {
+        let sampling = Sampling { threads: Some(threads), ..SAMPLING };
+        oracle.light(&[DVec3::new(0.3, 1.2, 0.5)], &normals, sampling, &Silent).unwrap().remove(0)
+    };
+    let found = light(2);
+    assert_eq!(found, light(1));
+    for (n, (irradiance, error)) in found.irradiance.iter().zip(&found.irradiance_error).enumerate() {
+        // 16 batches: Student's t with 15 degrees of freedom exceeds 6 with probability 2e-5.
+        assert!((irradiance.y - PI).abs() < 6.0 * error.y, "normal {n}: {irradiance} ± {error}");
+        assert!(error.y > 0.0 && error.y < 0.03 * PI, "normal {n}: ± {error}");
+    }
+    // The same paths, added up another way.
+    assert!((found.vectors[0][1][0] - found.irradiance[0].y).abs() < 1e-9);
+    assert!((found.vectors[5][1][2] + found.irradiance[1].y).abs() < 1e-9);
+    for (n, coefficient) in found.radiance[1].iter().enumerate() {
+        let expected = if n == 0 { 2.0 * PI.sqrt() } else { 0.0 };
+        // The radiance of a path is spread by up to three times its mean 1: 3 √4π / √30,000 of noise, five of them.
+        assert!((coefficient - expected).abs() < 5.0 * 3.0 * 3.545 / 30_000_f64.sqrt(), "{n}: {coefficient}");
+    }
+}
+
+#[test]
+fn evenly_spread_directions_have_less_noise_and_no_bias() {
+    let (scene, flat) = lit_rectangle_scene();
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    let point = DVec3::new(0.5, 0.25, 1.0);
+    let sampling = Sampling { paths: 4096, ..SAMPLING };
+    let found = &oracle.light(&[point], &[Vec3::NEG_Z], sampling, &Silent).unwrap()[0];
+    let (irradiance, error) = (found.irradiance[0], found.irradiance_error[0].max_element());
+    let off = (irradiance - lit_rectangle_irradiance()).abs().max_element();
+    assert!(off < 6.0 * error, "{irradiance} ± {error}");
+    // Independent paths over the sphere, each 4π L cos inside the rectangle, would have about three times as much.
+    let independent =
+        oracle.irradiance_vectors(&[point], sampling, &Silent).unwrap()[0].standard_error[5][1][2];
+    assert!(error < 0.6 * independent, "{error} {independent}");
+}
+
 #[test]
 fn a_rectangle_in_parallel_light_has_its_closed_form() {
     let (scene, flat) = lit_rectangle_scene();

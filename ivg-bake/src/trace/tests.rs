@@ -1,7 +1,7 @@
 use glam::{DVec3, Vec3};
 
 use super::{Books, Tracer};
-use crate::accumulate::{NUMBERS, Sums};
+use crate::accumulate::Sums;
 use crate::cases::SceneBuilder;
 use crate::estimate::{Estimate, Flight};
 use crate::sampling::hemisphere;
@@ -18,7 +18,7 @@ struct Count {
 }
 
 impl Sums for Count {
-    fn add(&mut self, _bucket: usize, quanta: &[f32; NUMBERS]) {
+    fn add<const N: usize>(&mut self, _first: usize, quanta: &[f32; N]) {
         self.flights += 1;
         self.largest = self.largest.max(quanta[0]);
     }
@@ -27,17 +27,17 @@ impl Sums for Count {
 struct EachFlight;
 
 impl Estimate for EachFlight {
-    fn buckets(&self) -> usize {
+    type Value = ();
+
+    fn sums(&self) -> usize {
         1
     }
 
     fn deposit(&self, flight: &Flight, sums: &mut impl Sums) {
-        sums.add(0, &[flight.power.max_element(); NUMBERS]);
+        sums.add(0, &[flight.power.max_element()]);
     }
 
-    fn vectors(&self, _sums: &[i64], _vertex: usize, _power: f64) -> ivg_grid::HemisphereVectors {
-        ivg_grid::HemisphereVectors::default()
-    }
+    fn value(&self, _sums: &[i64], _vertex: usize, _power: f64) {}
 }
 
 fn trace(builder: SceneBuilder, photons: u64, max_bounces: u32) -> (Books, Count) {

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::FaceCrossing;
-use crate::accumulate::{MAX_QUANTA, NUMBERS, Sums};
+use crate::accumulate::{MAX_QUANTA, Sums};
 use crate::dual::Boxes;
 use crate::estimate::{Estimate, Flight};
 use crate::region::Regions;
@@ -10,11 +10,11 @@ use crate::region::Regions;
 struct List(Vec<i64>, u32);
 
 impl Sums for List {
-    fn add(&mut self, bucket: usize, quanta: &[f32; NUMBERS]) {
+    fn add<const N: usize>(&mut self, first: usize, quanta: &[f32; N]) {
         self.1 += 1;
         for (n, &number) in quanta.iter().enumerate() {
             assert!(number.abs() <= MAX_QUANTA, "a deposit of {number} quanta");
-            self.0[bucket * NUMBERS + n] += number.round_ties_even() as i64;
+            self.0[first + n] += number.round_ties_even() as i64;
         }
     }
 }
@@ -22,7 +22,7 @@ impl Sums for List {
 const CELLS: Boxes = Boxes { low: [-0.5; 3], step: [1.0; 3], count: [3, 4, 5] };
 
 fn deposit(estimate: &FaceCrossing<'_>, flights: &[Flight]) -> List {
-    let mut sums = List(vec![0; estimate.buckets() * NUMBERS], 0);
+    let mut sums = List(vec![0; estimate.sums()], 0);
     flights.iter().for_each(|flight| estimate.deposit(flight, &mut sums));
     sums
 }
@@ -39,7 +39,7 @@ fn a_crossing_adds_to_the_nearest_vertex_on_the_side_the_light_comes_from() {
         let sums = deposit(&estimate, &[flight]);
         assert_eq!(sums.1, 2);
         let vertex = CELLS.index([1, 2, 2]);
-        let vectors = estimate.vectors(&sums.0, vertex, 1.0);
+        let vectors = estimate.value(&sums.0, vertex, 1.0);
         for k in 0..3 {
             assert!((vectors[5][0][k] + direction[k] / divisor).abs() < 1e-3, "{vectors:?}");
         }
@@ -92,7 +92,7 @@ fn the_printed_estimator_treats_borders_as_printed() {
         [((1.0, 1.0), [1, 1, 2], 1.0), ((0.2, 1.0), [0, 1, 2], 2.0), ((0.2, 0.2), [0, 0, 2], 4.0)]
     {
         let sums = deposit(&estimate, &[through(place.0, place.1)]);
-        let found = estimate.vectors(&sums.0, CELLS.index(at), 1.0)[5][0][2];
+        let found = estimate.value(&sums.0, CELLS.index(at), 1.0)[5][0][2];
         assert!((found + share).abs() < 1e-3, "{found} at {at:?}");
     }
 }

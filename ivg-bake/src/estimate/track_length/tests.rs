@@ -1,7 +1,7 @@
 use glam::Vec3;
 
-use super::TrackLength;
-use crate::accumulate::{MAX_QUANTA, NUMBERS, Sums};
+use super::{RadianceTracks, VectorTracks};
+use crate::accumulate::{MAX_QUANTA, Sums};
 use crate::dual::Boxes;
 use crate::estimate::{Estimate, Flight};
 use crate::region::Regions;
@@ -11,10 +11,10 @@ use crate::region::Regions;
 struct List(Vec<i64>);
 
 impl Sums for List {
-    fn add(&mut self, bucket: usize, quanta: &[f32; NUMBERS]) {
+    fn add<const N: usize>(&mut self, first: usize, quanta: &[f32; N]) {
         for (n, &number) in quanta.iter().enumerate() {
             assert!(number.abs() <= MAX_QUANTA, "a deposit of {number} quanta");
-            self.0[bucket * NUMBERS + n] += number.round_ties_even() as i64;
+            self.0[first + n] += number.round_ties_even() as i64;
         }
     }
 }
@@ -23,13 +23,13 @@ impl Sums for List {
 fn a_flight_adds_its_length_to_the_three_hemispheres_it_comes_from() {
     let cells = Boxes { low: [0.0; 3], step: [2.0, 4.0, 8.0], count: [3, 2, 1] };
     let regions = Regions::new((0..6).map(|_| None));
-    let estimate = TrackLength::new(cells, &regions);
-    let mut sums = List(vec![0; estimate.buckets() * NUMBERS]);
+    let estimate = VectorTracks::new(cells, &regions);
+    let mut sums = List(vec![0; estimate.sums()]);
     // Down through the second column of the first row; the light comes from above and a little from −x.
     let direction = Vec3::new(0.6, -0.8, 0.0);
     let power = Vec3::new(1.0, 0.5, 0.25);
     estimate.deposit(&Flight { origin: Vec3::new(2.1, 4.0, 3.0), direction, length: 2.0, power }, &mut sums);
-    let vectors = estimate.vectors(&sums.0, 1, 64.0);
+    let vectors = estimate.value(&sums.0, 1, 64.0);
     // Each deposit is rounded to 2^-22 of the next power of two above the diagonal, 16; over a volume of 64.
     let quantum = 64.0 * 16.0 / 64.0 / 4_194_304.0;
     for (h, hemisphere) in vectors.iter().enumerate() {
@@ -43,7 +43,34 @@ fn a_flight_adds_its_length_to_the_three_hemispheres_it_comes_from() {
         }
     }
     for other in [0, 2, 3, 4, 5] {
-        assert_eq!(estimate.vectors(&sums.0, other, 64.0), ivg_grid::HemisphereVectors::default());
+        assert_eq!(estimate.value(&sums.0, other, 64.0), ivg_grid::HemisphereVectors::default());
+    }
+}
+
+/// The radiance is power times length over volume from one direction, so that each coefficient is that times its basis
+/// function: every sign and every place is told apart by a direction without symmetry.
+#[test]
+fn a_flight_adds_its_length_to_the_nine_harmonics_of_where_it_comes_from() {
+    let cells = Boxes { low: [0.0; 3], step: [2.0, 4.0, 8.0], count: [3, 2, 1] };
+    let regions = Regions::new((0..6).map(|_| None));
+    let estimate = RadianceTracks::new(cells, &regions);
+    let mut sums = List(vec![0; estimate.sums()]);
+    let direction = Vec3::new(2.0, -3.0, -6.0) / 7.0;
+    let power = Vec3::new(1.0, 0.5, 0.25);
+    let flight = Flight { origin: Vec3::new(2.1, 3.9, 3.0), direction, length: 0.5, power };
+    estimate.deposit(&flight, &mut sums);
+    let radiance = estimate.value(&sums.0, 1, 64.0);
+    // As in the test above.
+    let quantum = 64.0 * 16.0 / 64.0 / 4_194_304.0;
+    let expected = ivg_grid::harmonics::basis(-direction.as_dvec3());
+    for c in 0..3 {
+        for (n, y) in expected.iter().enumerate() {
+            let coefficient = *y as f32 * power[c] * 0.5;
+            assert!((radiance[c][n] - coefficient).abs() < quantum, "{c} {n}: {}", radiance[c][n]);
+        }
+    }
+    for other in [0, 2, 3, 4, 5] {
+        assert_eq!(estimate.value(&sums.0, other, 64.0), ivg_grid::RadianceHarmonics::default());
     }
 }
 
@@ -52,12 +79,18 @@ fn the_longest_stretch_of_a_whole_photon_fits() {
     for step in [[1.0, 1.0, 1.0], [0.3, 77.0, 1300.0], [1.154_700_5; 3]] {
         let cells = Boxes { low: [-5.0, 3.0, 900.0], step, count: [2; 3] };
         let regions = Regions::new((0..8).map(|_| None));
-        let estimate = TrackLength::new(cells, &regions);
-        let mut sums = List(vec![0; estimate.buckets() * NUMBERS]);
         let direction = Vec3::from(step).normalize();
         let origin = Vec3::from(cells.low) - direction * 50.0;
-        estimate.deposit(&Flight { origin, direction, length: f32::INFINITY, power: Vec3::ONE }, &mut sums);
-        assert!(sums.0.iter().any(|s| s.unsigned_abs() as f32 > MAX_QUANTA / 8.0), "quanta are not wasted");
+        let flight = Flight { origin, direction, length: f32::INFINITY, power: Vec3::ONE };
+        let vectors = VectorTracks::new(cells, &regions);
+        let radiance = RadianceTracks::new(cells, &regions);
+        let [mut a, mut b] = [vectors.sums(), radiance.sums()].map(|len| List(vec![0; len]));
+        vectors.deposit(&flight, &mut a);
+        radiance.deposit(&flight, &mut b);
+        for sums in [a, b] {
+            let largest = sums.0.iter().map(|s| s.unsigned_abs()).max();
+            assert!(largest.is_some_and(|s| s as f32 > MAX_QUANTA / 8.0), "quanta are not wasted");
+        }
     }
 }
 
@@ -65,8 +98,8 @@ fn the_longest_stretch_of_a_whole_photon_fits() {
 fn many_cells_in_one_flight_are_all_added() {
     let cells = Boxes { low: [0.0; 3], step: [1.0; 3], count: [300, 1, 1] };
     let regions = Regions::new((0..300).map(|_| None));
-    let estimate = TrackLength::new(cells, &regions);
-    let mut sums = List(vec![0; estimate.buckets() * NUMBERS]);
+    let estimate = VectorTracks::new(cells, &regions);
+    let mut sums = List(vec![0; estimate.sums()]);
     let flight = Flight {
         origin: Vec3::new(-4.0, 0.5, 0.5),
         direction: Vec3::X,
@@ -76,6 +109,6 @@ fn many_cells_in_one_flight_are_all_added() {
     estimate.deposit(&flight, &mut sums);
     for vertex in 0..300 {
         // Distances near 300 are rounded to 2^-16.
-        assert!((estimate.vectors(&sums.0, vertex, 1.0)[1][0][0] + 1.0).abs() < 1e-4, "cell {vertex}");
+        assert!((estimate.value(&sums.0, vertex, 1.0)[1][0][0] + 1.0).abs() < 1e-4, "cell {vertex}");
     }
 }
