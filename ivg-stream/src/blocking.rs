@@ -131,6 +131,12 @@ impl Session {
         self.session.grid()
     }
 
+    /// As [`crate::Session::grid_header`].
+    #[must_use]
+    pub fn grid_header(&self) -> Option<&ivg_format::Header> {
+        self.session.grid_header()
+    }
+
     /// As [`crate::Session::scene_at`].
     #[must_use]
     pub fn scene_at(&mut self, share: f64) -> Scene {

@@ -89,6 +89,13 @@ impl LocalScene {
         self.assembly.grid()
     }
 
+    /// The header of the grid's file, if the scene has one: its encoding decides which reconstruction is the most accurate
+    /// (`ivg_grid::Reconstruction::for_encoding`), its units what the numbers measure.
+    #[must_use]
+    pub fn grid_header(&self) -> Option<&ivg_format::Header> {
+        self.assembly.grid_header()
+    }
+
     /// The scene with each mesh at the level of `share` of its vertices, in [0, 1].
     #[must_use]
     pub fn scene_at(&mut self, share: f64) -> Scene {

@@ -133,7 +133,7 @@ fn goals_are_reached_one_after_the_other() {
     let server = Faulty::start(files.clone(), |_, _| Fault::None);
     let mut quiet = |_: &Event| ();
     let mut session = Session::open(&server.url(), options(), &mut quiet).unwrap();
-    assert!(session.grid().is_none() && session.replay(0).is_none());
+    assert!(session.grid().is_none() && session.grid_header().is_none() && session.replay(0).is_none());
     let coarse = session.scene_at(1.0);
     assert!(coarse == session.manifest().scene, "before the first packet the coarse meshes are shown");
 
@@ -158,6 +158,7 @@ fn goals_are_reached_one_after_the_other() {
                 "no byte of light was wanted"
             );
         } else {
+            assert_eq!(session.grid_header().unwrap().encoding, ivg_format::Encoding::PackedOct24);
             let grid = session.grid().unwrap();
             assert!(grid.received_count() as f64 >= goal.light * grid.vertex_count() as f64);
         }

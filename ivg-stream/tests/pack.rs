@@ -58,6 +58,7 @@ fn what_is_packed_is_read_back() {
     assert!(corners(&local.scene_at(1.0)) == corners(&source));
     let grid = local.grid().unwrap();
     assert_eq!(grid.received_count(), grid.vertex_count());
+    assert_eq!(local.grid_header().unwrap().lattice, *grid.lattice());
     assert!(open(&home.path().join("scene.glb")).is_ok(), "scene.glb itself names the directory");
 }
 

@@ -101,6 +101,10 @@ impl Assembly {
         self.grid.as_ref()?.contents.grid()
     }
 
+    pub(crate) fn grid_header(&self) -> Option<&ivg_format::Header> {
+        self.grid.as_ref()?.contents.header()
+    }
+
     pub(crate) fn scene_at(&mut self, share: f64) -> Scene {
         let mut scene = self.manifest.scene.clone();
         for (entry, &file) in self.manifest.meshes.iter().zip(&self.mesh_files) {

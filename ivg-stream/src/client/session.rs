@@ -142,6 +142,14 @@ impl Session {
         self.assembly.grid()
     }
 
+    /// The header of the grid's file: its encoding decides which reconstruction is the most accurate
+    /// (`ivg_grid::Reconstruction::for_encoding`), its units what the numbers measure. `None` before it has arrived and in
+    /// scenes without a grid.
+    #[must_use]
+    pub fn grid_header(&self) -> Option<&ivg_format::Header> {
+        self.assembly.grid_header()
+    }
+
     /// The scene with each mesh at the level of `share` of its vertices, in [0, 1], or the highest level that has
     /// arrived if that is lower; meshes of which nothing has arrived as in `scene.glb`.
     #[must_use]

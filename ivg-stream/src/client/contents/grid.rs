@@ -26,7 +26,8 @@ impl GridContents {
         self.state.as_ref()?.1.as_ref()
     }
 
-    fn header(&self) -> Option<&Header> {
+    /// The header, `None` before the prefix.
+    pub(in crate::client) fn header(&self) -> Option<&Header> {
         self.state.as_ref().map(|(header, _)| header)
     }
 

@@ -1,4 +1,4 @@
-use ivg_format::{EncodeOptions, GridSource, Lattice};
+use ivg_format::{EncodeOptions, Encoding, GridSource, Lattice};
 use ivg_grid::IrradianceGrid;
 use pmesh_format::{IndexedMesh, ProgressiveMesh};
 use quickcheck::quickcheck;
@@ -14,6 +14,16 @@ fn grid_file() -> Vec<u8> {
     source.validity = Some(&validity);
     let options = EncodeOptions { vertices_per_slice: 2, ..EncodeOptions::default() };
     ivg_format::encode(&source, &options).unwrap()
+}
+
+/// The same lattice with radiance harmonics.
+fn radiance_file() -> Vec<u8> {
+    let lattice = Lattice::new([3, 5, 4], [0.0; 3], [1.0, 2.0, 3.0]).unwrap();
+    let radiance: Vec<_> =
+        (0..60).map(|i| [[i as f32 + 1.0, 0.5, 0.25, 0.0, -0.5, 0.1, 0.2, 0.3, 0.4]; 3]).collect();
+    let options =
+        EncodeOptions { encoding: Encoding::Sh2, vertices_per_slice: 2, ..EncodeOptions::default() };
+    ivg_format::encode(&GridSource::new(lattice, &radiance), &options).unwrap()
 }
 
 /// A fan whose last vertex always collapses onto the one before it.
@@ -56,6 +66,13 @@ fn arrives<C: Contents>(download: &mut Download<C>, file: &[u8], cuts: &[usize])
 quickcheck! {
     fn a_grid_cut_anywhere_is_the_grid_of_the_file(cuts: Vec<usize>) -> bool {
         let file = grid_file();
+        let (expected, _) = IrradianceGrid::from_file(&file, &ivg_format::Limits::default()).unwrap();
+        let mut download = begin(GridContents::new(1000), &file);
+        arrives(&mut download, &file, &cuts) && download.contents.grid() == Some(&expected)
+    }
+
+    fn a_grid_of_radiance_cut_anywhere_is_the_grid_of_the_file(cuts: Vec<usize>) -> bool {
+        let file = radiance_file();
         let (expected, _) = IrradianceGrid::from_file(&file, &ivg_format::Limits::default()).unwrap();
         let mut download = begin(GridContents::new(1000), &file);
         arrives(&mut download, &file, &cuts) && download.contents.grid() == Some(&expected)
