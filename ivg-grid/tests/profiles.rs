@@ -1,4 +1,4 @@
-//! The formulas of the profile *irradiance* (`spec/ivg.md`, section 12), written anew in binary64 from its text, and the
+//! The formulas of the profile *irradiance* (`spec/ivg.md`, section 13), written anew in binary64 from its text, and the
 //! bounds that it gives for binary32 (IVG-IRR-13).
 
 use glam::Vec3;
