@@ -1,9 +1,10 @@
 //! A bundle: the irradiance vectors of some vertices, as a window into the caller's bytes.
 
 use crate::codec::{Broken, harmonics, packed, vectors};
-use crate::encoding::Encoding;
+use crate::encoding::{Encoding, Order};
 use crate::header::{Header, RecordId};
 use crate::order::BundleVertices;
+use crate::order::explicit::{self, Listed};
 use crate::quant::pack::unpack;
 use crate::values::{HemisphereVectors, Quantity, RadianceHarmonics, VertexValues};
 use ivg_wire::{ByteOffset, Error, Part};
@@ -15,6 +16,9 @@ pub struct Bundle<'a> {
     header: &'a Header,
     id: RecordId,
     generation: u32,
+    /// The list of vertices, where the order is `explicit`.
+    index: &'a [u8],
+    /// The values.
     payload: &'a [u8],
     len: usize,
 }
@@ -29,7 +33,17 @@ impl<'a> Bundle<'a> {
         offset: ByteOffset,
     ) -> Result<Self, Error> {
         let len = header.record_vertices(id) as usize;
-        let bundle = Self { header, id, generation, payload, len };
+        let index_bytes = header.index_bytes(id) as usize;
+        let Some((index, payload)) = payload.split_at_checked(index_bytes) else {
+            return Err(Error::new(ivg_wire::codes::RECORD_LENGTH, offset, Part::Record(id.stored())));
+        };
+        if let RecordId::Bundle(k) = id
+            && header.order == Order::Explicit
+        {
+            explicit::check(&header.lattice, k, index, len, offset)?;
+        }
+        let offset = ByteOffset(offset.0.saturating_add(index_bytes as u64));
+        let bundle = Self { header, id, generation, index, payload, len };
         let checked = match header.encoding {
             Encoding::PackedOct24 => packed::check(payload, len),
             Encoding::VectorsF32 => vectors::check(payload, header.scale_exponent),
@@ -73,7 +87,13 @@ impl<'a> Bundle<'a> {
         self.len == 0
     }
 
-    /// The stored bytes.
+    /// The stored list of vertices of a bundle of the order `explicit`; empty for others.
+    #[must_use]
+    pub const fn index(&self) -> &'a [u8] {
+        self.index
+    }
+
+    /// The stored bytes of the values.
     #[must_use]
     pub const fn payload(&self) -> &'a [u8] {
         self.payload
@@ -81,10 +101,15 @@ impl<'a> Bundle<'a> {
 
     /// Linear indices of the vertices, in stored order.
     #[must_use]
-    pub fn vertices(&self) -> Vertices {
-        match self.id {
-            RecordId::Bundle(k) => Vertices(Source::Bundle(self.header.bundle_vertices(k))),
-            _ => {
+    pub fn vertices(&self) -> Vertices<'a> {
+        let implied = match self.id {
+            RecordId::Bundle(k) => Some(self.header.bundle_vertices(k)),
+            _ => None,
+        };
+        match implied {
+            Some(Some(vertices)) => Vertices(Source::Bundle(vertices)),
+            Some(None) => Vertices(Source::Listed(Listed::new(self.index, self.len))),
+            None => {
                 let mut corners = [0; 8];
                 for (to, from) in corners.iter_mut().zip(self.header.lattice.corners()) {
                     *to = from;
@@ -182,10 +207,10 @@ impl<'a> Bundle<'a> {
 
 /// The vertices of a record, in stored order: an iterator over linear indices.
 #[derive(Clone, Debug)]
-pub struct Vertices(Source);
+pub struct Vertices<'a>(Source<'a>);
 
 #[derive(Clone, Debug)]
-enum Source {
+enum Source<'a> {
     /// The first `count` of `corners`, from `next` on.
     Corners {
         corners: [u64; 8],
@@ -193,9 +218,10 @@ enum Source {
         count: usize,
     },
     Bundle(BundleVertices),
+    Listed(Listed<'a>),
 }
 
-impl Iterator for Vertices {
+impl Iterator for Vertices<'_> {
     type Item = u64;
 
     fn next(&mut self) -> Option<u64> {
@@ -206,6 +232,7 @@ impl Iterator for Vertices {
                 vertex
             }
             Source::Bundle(vertices) => vertices.next(),
+            Source::Listed(vertices) => vertices.next(),
         }
     }
 
@@ -213,8 +240,9 @@ impl Iterator for Vertices {
         match &self.0 {
             Source::Corners { next, count, .. } => (count - next, Some(count - next)),
             Source::Bundle(vertices) => vertices.size_hint(),
+            Source::Listed(vertices) => (vertices.left(), Some(vertices.left())),
         }
     }
 }
 
-impl ExactSizeIterator for Vertices {}
+impl ExactSizeIterator for Vertices<'_> {}

@@ -22,6 +22,19 @@ pub mod codes {
             "the number of validity records is neither 0 nor the one that follows from the lattice";
         /// A bundle would be longer than a record may be.
         RECORD_TOO_LARGE = 308, Invalid, "IVG-HDR-06", "a bundle would be longer than a record may be";
+        /// A file of the order `explicit` does not begin with its directory.
+        DIRECTORY_ABSENT = 309, Invalid, "IVG-DIRE-01",
+            "a file of the order explicit has its directory as its first chunk";
+        /// A directory in a file of another order.
+        DIRECTORY_FORBIDDEN = 310, Invalid, "IVG-DIRE-01", "only files of the order explicit have a directory";
+        /// The directory does not have one entry for each bundle.
+        DIRECTORY_ENTRIES = 311, Invalid, "IVG-DIRE-02", "the directory does not have one entry for each bundle";
+        /// A bundle has no vertex or too many, or all together have more than there are or lack some.
+        DIRECTORY_VERTICES = 312, Invalid, "IVG-DIRE-03",
+            "a bundle has no vertices or too many, or all bundles together have too many or too few";
+        /// The list of vertices of a bundle cannot have this length.
+        DIRECTORY_INDEX = 313, Invalid, "IVG-DIRE-03",
+            "the list of a bundle's vertices cannot be as short or as long as the directory says";
         /// The forbidden encoding 0.
         ENCODING_FORBIDDEN = 401, Invalid, "IVG-ENC-01", "encoding 0 does not exist";
         /// An encoding that this reader does not have.
@@ -46,6 +59,13 @@ pub mod codes {
         METADATA = 411, Invalid, "IVG-META-02", "the metadata are not lines of key=value in UTF-8";
         /// The forbidden ratio code −128.
         RATIO_CODE = 412, Invalid, "IVG-SH-04", "a ratio code holds the forbidden value -128";
+        /// A number in the list of a bundle's vertices is not in its shortest form, too long, or cut off.
+        INDEX_NUMBER = 420, Invalid, "IVG-EXP-02",
+            "a number in the list of vertices is not in its shortest form, is too long or has no end";
+        /// A vertex in the list of a bundle is outside the lattice, or a corner.
+        INDEX_VERTEX = 421, Invalid, "IVG-EXP-03", "the list of vertices names a corner or a vertex outside the lattice";
+        /// The list of vertices does not fill its bytes.
+        INDEX_LENGTH = 422, Invalid, "IVG-EXP-03", "the list of vertices does not fill its bytes exactly";
         /// The lattice has more vertices than the caller allows.
         LIMIT_VERTICES = 605, Limit, "IVG-LIM-01", "the lattice has more vertices than the limit";
     }

@@ -2,6 +2,9 @@
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::arithmetic_side_effects))]
 
 use crate::bundle::Bundle;
+use crate::code::codes as ours;
+use crate::directory::DIRECTORY;
+use crate::encoding::Order;
 use crate::header::{Header, RecordId};
 use crate::limits::Limits;
 use crate::metadata::{self, LIGHTS, METADATA};
@@ -15,7 +18,7 @@ use ivg_wire::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Event<'a> {
-    /// The header, checked.
+    /// The header, checked; for the order `explicit`, the directory behind it too, whose chunk has no event of its own.
     Header(&'a Header),
     /// A chunk: `LITE` and `META` checked, others as they are.
     Chunk(Chunk<'a>),
@@ -29,8 +32,8 @@ pub enum Event<'a> {
     End,
 }
 
-/// A push decoder of one file, from its first byte on. It keeps no bytes and allocates nothing: the caller
-/// owns the buffer.
+/// A push decoder of one file, from its first byte on. It keeps no bytes, for the caller owns the buffer, and allocates
+/// nothing but the directory of a file of the order `explicit`: twice the bytes that it has in the file.
 ///
 /// ```
 /// # use ivg_format::{Decoder, EncodeOptions, Event, GridSource, Lattice, Limits, encode};
@@ -150,10 +153,10 @@ fn advance<'a>(
 ) -> Result<Step<Event<'a>>, Error> {
     match (*state, header) {
         (State::Failed(error), _) => Err(error),
-        (State::Chunks(mut area, mut seen), _) => {
+        (State::Chunks(mut area, mut seen), header) => {
             let step = area.read(input, &limits.wire)?;
             if let Step::Consumed(_, chunk) = &step {
-                check_chunk(chunk, &mut seen)?;
+                check_chunk(chunk, &mut seen, header.as_ref())?;
                 *state = after_chunk(area, seen);
             }
             Ok(step.map(Event::Chunk))
@@ -168,18 +171,20 @@ fn advance<'a>(
         (State::Ended, _) if input.is_empty() => Ok(Step::NeedMore(0)),
         (State::Ended, _) => Err(Error::new(codes::TRAILING_BYTES, ByteOffset(offset), Part::AfterEnd)),
         // A record is never expected before there is a header.
-        (State::Header | State::Record(_), place) => Ok(Header::read(input, limits)?.map(|read| {
-            let area = ChunkArea::new(u64::from(read.header_bytes), read.data_offset, read.content_id);
-            *state = after_chunk(area, Seen::default());
-            Event::Header(place.insert(read))
-        })),
+        (State::Header | State::Record(_), place) => {
+            Ok(Header::read_with_chunks(input, limits)?.map(|read| {
+                *state = after_chunk(read.chunks, Seen::default());
+                Event::Header(place.insert(read.header))
+            }))
+        }
     }
 }
+
 fn after_chunk(area: ChunkArea, seen: Seen) -> State {
     if area.is_done() { State::Record(RecordId::Corners) } else { State::Chunks(area, seen) }
 }
 
-fn check_chunk(chunk: &Chunk<'_>, seen: &mut Seen) -> Result<(), Error> {
+fn check_chunk(chunk: &Chunk<'_>, seen: &mut Seen, header: Option<&Header>) -> Result<(), Error> {
     let once = |kind: ChunkKind, seen: &mut bool| {
         if core::mem::replace(seen, true) {
             return Err(Error::new(codes::CHUNK_REPEATED, chunk.offset, Part::Chunk(kind)));
@@ -194,6 +199,12 @@ fn check_chunk(chunk: &Chunk<'_>, seen: &mut Seen) -> Result<(), Error> {
         METADATA => {
             once(METADATA, &mut seen.metadata)?;
             metadata::metadata(chunk).map(drop)
+        }
+        // The one of the order explicit has been read with the header.
+        DIRECTORY => {
+            let again = header.is_some_and(|header| header.order == Order::Explicit);
+            let code = if again { codes::CHUNK_REPEATED } else { ours::DIRECTORY_FORBIDDEN };
+            Err(Error::new(code, chunk.offset, Part::Chunk(DIRECTORY)))
         }
         _ => chunk.skip_unknown(),
     }

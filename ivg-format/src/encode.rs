@@ -1,10 +1,14 @@
 //! Writing: a dense grid becomes a file. Deterministic: the same source and options give the same bytes.
 
+mod lists;
+
 use crate::codec::harmonics::RATIOS;
+use crate::directory::{DIRECTORY, Directory};
 use crate::encoding::{Encoding, Order, Units};
 use crate::header::{Header, RecordId, SCALE_EXPONENTS, VALIDITY_BLOCK};
 use crate::lattice::{Lattice, LatticeError};
 use crate::metadata::{self, BakedLight, LIGHTS, METADATA};
+use crate::order::explicit::write_list;
 use crate::quant::pack::{PackedHemisphere, pack_hemisphere};
 use crate::quant::{floor_log2, power_of_two_f64, ratio, rgb9e5};
 use crate::validity;
@@ -13,6 +17,7 @@ use crate::wire::{FORMAT, HEADER_BYTES};
 use alloc::vec::Vec;
 use core::fmt;
 use ivg_wire::{ContentId, Maximum, record_len, seal, write_chunk, write_end, write_record};
+use lists::Lists;
 
 /// What to write: one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +32,10 @@ pub struct GridSource<'a> {
     /// Blocked edges of every vertex: bit 0, 1, 2 set where geometry cuts the way to the neighbour in
     /// +x, +y, +z. `None` counts as none blocked. Without either, the file has no validity section.
     pub blocked_edges: Option<&'a [u8]>,
+    /// For the order `explicit`, and for no other: the linear indices of the vertices of each bundle, in any order. Each
+    /// vertex that is neither a corner nor of validity 0 is in exactly one of them; one of validity 0 is in one or none;
+    /// a bundle has at least one vertex, and no more than vertices per slice times those of the longest axis.
+    pub bundles: Option<&'a [Vec<u64>]>,
     /// The lights whose light is in the grid.
     pub lights: &'a [BakedLight<'a>],
     /// Free key–value pairs: keys of lower-case letters, digits, `-` and `_`, values of one line.
@@ -38,7 +47,7 @@ impl<'a> GridSource<'a> {
     #[must_use]
     pub fn new(lattice: Lattice, values: impl Into<Values<'a>>) -> Self {
         let values = values.into();
-        Self { lattice, values, validity: None, blocked_edges: None, lights: &[], meta: &[] }
+        Self { lattice, values, validity: None, blocked_edges: None, bundles: None, lights: &[], meta: &[] }
     }
 }
 
@@ -49,9 +58,10 @@ pub struct EncodeOptions {
     pub encoding: Encoding,
     /// In which order bundles take the vertices.
     pub order: Order,
-    /// Vertices that a bundle takes from each slice across the longest axis; at least 1.
+    /// Vertices that a bundle takes from each slice across the longest axis; at least 1. For the orders without slices,
+    /// a bundle has this many times the vertices of the longest axis: so many in `octree`, at most so many in `explicit`.
     pub vertices_per_slice: u32,
-    /// Seed of the permutations in the slices.
+    /// Seed of the order; without a meaning in `explicit`.
     pub seed: u64,
     /// What the numbers measure.
     pub units: Units,
@@ -127,6 +137,70 @@ pub enum EncodeError {
     NoVerticesPerSlice,
     /// A bundle would be longer than a record may be, or there would be too many bundles.
     BundleSize,
+    /// The order `explicit` without the bundles in [`GridSource::bundles`].
+    BundlesMissing,
+    /// Bundles in [`GridSource::bundles`], but another order than `explicit`.
+    BundlesUnwanted {
+        /// The order asked for.
+        order: Order,
+    },
+    /// A bundle has no vertex.
+    BundleEmpty {
+        /// Which bundle, counted from 0.
+        bundle: usize,
+    },
+    /// A bundle has more vertices than the vertices per slice allow.
+    BundleTooLarge {
+        /// Which bundle, counted from 0.
+        bundle: usize,
+        /// Its vertices.
+        found: usize,
+        /// As many are allowed.
+        most: u64,
+    },
+    /// A bundle names a vertex that the lattice does not have.
+    VertexOutside {
+        /// Which bundle, counted from 0.
+        bundle: usize,
+        /// The linear index.
+        vertex: u64,
+    },
+    /// A bundle names a corner of the lattice, which is in the corners record.
+    VertexIsCorner {
+        /// Which bundle, counted from 0.
+        bundle: usize,
+        /// The vertex's coordinates.
+        vertex: [u16; 3],
+    },
+    /// A vertex is named for the second time.
+    VertexTwice {
+        /// The bundle that names it again, counted from 0.
+        bundle: usize,
+        /// The vertex's coordinates.
+        vertex: [u16; 3],
+    },
+    /// A vertex that is valid and not a corner is in no bundle.
+    VertexMissing {
+        /// The vertex's coordinates.
+        vertex: [u16; 3],
+    },
+    /// The source is not one of the file whose header was given.
+    OtherFile {
+        /// What differs.
+        what: &'static str,
+    },
+    /// A value is too large for the scale exponent of the file; write a new file.
+    ScaleExponent {
+        /// The file's.
+        file: i16,
+        /// The smallest that the values need.
+        needed: i16,
+    },
+    /// A validity record or the end record, which are never replaced.
+    NeverReplaced {
+        /// Which record.
+        id: RecordId,
+    },
     /// A blocked edge leads out of the lattice.
     EdgeOutside {
         /// The vertex's coordinates.
@@ -154,10 +228,13 @@ pub enum EncodeError {
 /// [`EncodeError`] names what cannot be written and where.
 pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8>, EncodeError> {
     check_source(source)?;
-    let prepared = Prepared::new(source, options.encoding)?;
+    let prepared = Prepared::new(source, options.encoding, None)?;
+    let header = Header { scale_exponent: prepared.scale_exponent(), ..unplaced(source, options)? };
+    let lists = Lists::of(source, options.order, header.largest_bundle())?;
+    let directory = lists.directory(options)?;
     let mut chunks = Vec::new();
-    write_chunks(&mut chunks, source)?;
-    let header = layout(source, options, prepared.scale_exponent(), chunks.len())?;
+    write_chunks(&mut chunks, source, (options.order == Order::Explicit).then_some(&directory))?;
+    let header = layout(header, directory, lists.len(), chunks.len())?;
 
     let mut out =
         Vec::with_capacity(usize::try_from(header.file_bytes).map_err(|_| EncodeError::BundleSize)?);
@@ -165,28 +242,94 @@ pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8
     out.extend_from_slice(&chunks);
     let mut payload = Vec::new();
     for id in header.records() {
-        payload.clear();
-        match id {
-            RecordId::Corners => {
-                prepared.write(&mut payload, header.lattice.corners());
-            }
-            RecordId::Bundle(k) => {
-                prepared.write(&mut payload, header.bundle_vertices(k));
-            }
-            RecordId::Validity(j) => {
-                let first = (u64::from(j) * VALIDITY_BLOCK) as usize;
-                let range = first..first + header.record_vertices(id) as usize;
-                validity::write(&mut payload, range, source.validity, source.blocked_edges);
-            }
-            RecordId::End => {
-                write_end(&mut out, header.file_bytes, ContentId::default());
-                continue;
-            }
+        if id == RecordId::End {
+            write_end(&mut out, header.file_bytes, ContentId::default());
+            continue;
         }
+        payload.clear();
+        write_payload(&mut payload, source, &header, &lists, &prepared, id);
         write_record(&mut out, id.stored(), 0, &payload, ContentId::default());
     }
     seal_all(&mut out, header);
     Ok(out)
+}
+
+/// Writes one record of the file with this header, at a generation: what a server replaces a record by that it has better
+/// light for (IVG-UPD-01). At generation 0 and from the source that [`encode`] was given, the bytes in the file.
+///
+/// The header stays as it is, so values are stored at its scale exponent, whatever the source's largest is now.
+///
+/// # Errors
+///
+/// As [`encode`]; [`EncodeError::OtherFile`] if the source does not fit the header, [`EncodeError::ScaleExponent`] if a
+/// value is too large for the file, [`EncodeError::NeverReplaced`] for a generation of a record that has none.
+pub fn encode_record(
+    source: &GridSource<'_>,
+    header: &Header,
+    id: RecordId,
+    generation: u32,
+) -> Result<Vec<u8>, EncodeError> {
+    check_source(source)?;
+    let has_validity = source.validity.is_some() || source.blocked_edges.is_some();
+    let what = if source.lattice != header.lattice {
+        "lattice"
+    } else if has_validity != (header.validity_records > 0) {
+        "validity"
+    } else if header.record_range(id).is_empty() {
+        "record"
+    } else {
+        ""
+    };
+    if !what.is_empty() {
+        return Err(EncodeError::OtherFile { what });
+    }
+    let mut out = Vec::new();
+    if generation != 0 && matches!(id, RecordId::Validity(_) | RecordId::End) {
+        return Err(EncodeError::NeverReplaced { id });
+    }
+    if id == RecordId::End {
+        write_end(&mut out, header.file_bytes, header.content_id);
+        return Ok(out);
+    }
+    let lists = Lists::of(source, header.order, header.largest_bundle())?;
+    let prepared = Prepared::new(source, header.encoding, Some(header.scale_exponent))?;
+    let mut payload = Vec::new();
+    if header.order == Order::Explicit && lists.len() != header.bundle_count as usize {
+        return Err(EncodeError::OtherFile { what: "bundles" });
+    }
+    write_payload(&mut payload, source, header, &lists, &prepared, id);
+    if payload.len() as u64 != header.payload_len(id) {
+        return Err(EncodeError::OtherFile { what: "bundles" });
+    }
+    write_record(&mut out, id.stored(), generation, &payload, header.content_id);
+    Ok(out)
+}
+
+/// Appends the payload of a record that is not the end record.
+fn write_payload(
+    out: &mut Vec<u8>,
+    source: &GridSource<'_>,
+    header: &Header,
+    lists: &Lists,
+    prepared: &Prepared<'_>,
+    id: RecordId,
+) {
+    match id {
+        RecordId::Bundle(k) => match header.bundle_vertices(k) {
+            Some(vertices) => prepared.write(out, vertices),
+            None => {
+                let list = lists.get(k).iter().copied();
+                write_list(out, list.clone());
+                prepared.write(out, list);
+            }
+        },
+        RecordId::Validity(j) => {
+            let first = (u64::from(j) * VALIDITY_BLOCK) as usize;
+            let range = first..first + header.record_vertices(id) as usize;
+            validity::write(out, range, source.validity, source.blocked_edges);
+        }
+        RecordId::Corners | RecordId::End => prepared.write(out, header.lattice.corners()),
+    }
 }
 
 /// Derives the content id from the bytes written so far and makes every checksum anew with it.
@@ -237,15 +380,24 @@ fn check_source(source: &GridSource<'_>) -> Result<(), EncodeError> {
     }
 }
 
-fn write_chunks(out: &mut Vec<u8>, source: &GridSource<'_>) -> Result<(), EncodeError> {
+fn write_chunks(
+    out: &mut Vec<u8>,
+    source: &GridSource<'_>,
+    directory: Option<&Directory>,
+) -> Result<(), EncodeError> {
     let mut chunk = |kind, payload: &[u8]| {
         let length = ivg_wire::chunk_len(payload.len() as u64).unwrap_or(u64::MAX);
         if length > u64::from(Maximum::CHUNK_BYTES) {
             return Err(EncodeError::ChunkSize);
         }
-        write_chunk(out, kind, false, payload, ContentId::default());
+        write_chunk(out, kind, kind == DIRECTORY, payload, ContentId::default());
         Ok(())
     };
+    if let Some(directory) = directory {
+        let mut payload = Vec::new();
+        directory.write(&mut payload);
+        chunk(DIRECTORY, &payload)?;
+    }
     if !source.lights.is_empty() {
         chunk(LIGHTS, &metadata::write_lights(source.lights))?;
     }
@@ -255,39 +407,52 @@ fn write_chunks(out: &mut Vec<u8>, source: &GridSource<'_>) -> Result<(), Encode
     Ok(())
 }
 
-/// The header of the file, with its content id still 0.
-fn layout(
-    source: &GridSource<'_>,
-    options: &EncodeOptions,
-    scale_exponent: i16,
-    chunk_bytes: usize,
-) -> Result<Header, EncodeError> {
+/// The header of the file, without what follows from its bundles and chunks.
+fn unplaced(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Header, EncodeError> {
     if options.vertices_per_slice == 0 {
         return Err(EncodeError::NoVerticesPerSlice);
     }
     let has_validity = source.validity.is_some() || source.blocked_edges.is_some();
     let blocks = if has_validity { source.lattice.vertex_count().div_ceil(VALIDITY_BLOCK) } else { 0 };
-    let mut header = Header {
+    Ok(Header {
         minor: FORMAT.minor,
         optional_features: 0,
         header_bytes: FORMAT.header_bytes,
         content_id: ContentId::default(),
-        data_offset: (HEADER_BYTES + chunk_bytes) as u64,
+        data_offset: 0,
         file_bytes: 0,
         lattice: source.lattice,
         encoding: options.encoding,
         order: options.order,
-        scale_exponent,
+        scale_exponent: 0,
         vertices_per_slice: options.vertices_per_slice,
         seed: options.seed,
         bundle_count: 0,
         validity_records: u32::try_from(blocks).map_err(|_| EncodeError::BundleSize)?,
         units: options.units,
-    };
-    header.bundle_count =
-        u32::try_from(header.slices().bundle_count()).map_err(|_| EncodeError::BundleSize)?;
-    let largest = record_len(header.payload_len(RecordId::Bundle(1))).unwrap_or(u64::MAX);
-    if header.bundle_count > i32::MAX as u32 || largest > u64::from(Maximum::RECORD_BYTES) {
+        directory: Directory::default(),
+    })
+}
+
+/// The header with the place of every record, its content id still 0.
+fn layout(
+    header: Header,
+    directory: Directory,
+    lists: usize,
+    chunk_bytes: usize,
+) -> Result<Header, EncodeError> {
+    let bundles = header.rule().map_or(lists as u64, |rule| rule.bundle_count());
+    let bundle_count = u32::try_from(bundles).map_err(|_| EncodeError::BundleSize)?;
+    let data_offset = (HEADER_BYTES + chunk_bytes) as u64;
+    let mut header = Header { bundle_count, data_offset, directory, ..header };
+    // Bundles of a rule never grow; those of a list may.
+    let judged =
+        if header.order == Order::Explicit { header.bundle_count } else { header.bundle_count.min(1) };
+    let fits = (1..=judged).all(|k| {
+        let largest = record_len(header.payload_len(RecordId::Bundle(k))).unwrap_or(u64::MAX);
+        largest <= u64::from(Maximum::RECORD_BYTES)
+    });
+    if header.bundle_count > i32::MAX as u32 || !fits {
         return Err(EncodeError::BundleSize);
     }
     header.file_bytes = header.implied_file_bytes().ok_or(EncodeError::BundleSize)?;
@@ -305,9 +470,10 @@ enum Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    fn new(source: &GridSource<'a>, encoding: Encoding) -> Result<Self, EncodeError> {
+    /// At the scale exponent `fixed`, or at the smallest that holds the values.
+    fn new(source: &GridSource<'a>, encoding: Encoding, fixed: Option<i16>) -> Result<Self, EncodeError> {
         match (encoding, source.values) {
-            (Encoding::PackedOct24, Values::Vectors(vectors)) => pack(&source.lattice, vectors),
+            (Encoding::PackedOct24, Values::Vectors(vectors)) => pack(&source.lattice, vectors, fixed),
             (Encoding::VectorsF32, Values::Vectors(vectors)) => {
                 for (index, vertex) in (0..).zip(vectors) {
                     if let Some(h) = vertex.iter().position(|v| !v.iter().flatten().all(|c| c.is_finite())) {
@@ -317,9 +483,12 @@ impl<'a> Prepared<'a> {
                         });
                     }
                 }
-                Ok(Self::Plain(vectors))
+                match fixed {
+                    Some(file) if file != 0 => Err(EncodeError::ScaleExponent { file, needed: 0 }),
+                    _ => Ok(Self::Plain(vectors)),
+                }
             }
-            (Encoding::Sh2, Values::Radiance(radiance)) => relate(&source.lattice, radiance),
+            (Encoding::Sh2, Values::Radiance(radiance)) => relate(&source.lattice, radiance, fixed),
             (encoding, values) => Err(EncodeError::Quantity { encoding, found: values.quantity() }),
         }
     }
@@ -365,7 +534,11 @@ fn largest_colour() -> f64 {
     f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(*SCALE_EXPONENTS.end()))
 }
 
-fn pack<'a>(lattice: &Lattice, vectors: &[HemisphereVectors]) -> Result<Prepared<'a>, EncodeError> {
+fn pack<'a>(
+    lattice: &Lattice,
+    vectors: &[HemisphereVectors],
+    fixed: Option<i16>,
+) -> Result<Prepared<'a>, EncodeError> {
     let mut hemispheres = Vec::with_capacity(vectors.len());
     let mut largest = 0.0f64;
     for (index, vectors) in (0..).zip(vectors) {
@@ -386,11 +559,15 @@ fn pack<'a>(lattice: &Lattice, vectors: &[HemisphereVectors]) -> Result<Prepared
         }
         hemispheres.push(vertex);
     }
-    Ok(Prepared::Packed { hemispheres, scale_exponent: scale_exponent(largest) })
+    Ok(Prepared::Packed { hemispheres, scale_exponent: settle(largest, fixed)? })
 }
 
 /// Means and codes of the ratios to them (IVG-SH-06).
-fn relate<'a>(lattice: &Lattice, radiance: &[RadianceHarmonics]) -> Result<Prepared<'a>, EncodeError> {
+fn relate<'a>(
+    lattice: &Lattice,
+    radiance: &[RadianceHarmonics],
+    fixed: Option<i16>,
+) -> Result<Prepared<'a>, EncodeError> {
     let mut vertices = Vec::with_capacity(radiance.len());
     let mut largest = 0.0f64;
     for (index, channels) in (0..).zip(radiance) {
@@ -407,7 +584,7 @@ fn relate<'a>(lattice: &Lattice, radiance: &[RadianceHarmonics]) -> Result<Prepa
         vertices.push((mean, channels));
     }
     // The ratios are taken to the means as they will be decoded, so that their rounding is not passed on.
-    let scale_exponent = scale_exponent(largest);
+    let scale_exponent = settle(largest, fixed)?;
     let scale = power_of_two_f64(-i32::from(scale_exponent));
     let vertices = vertices.into_iter().map(|(mean, channels)| {
         let decoded = rgb9e5::decode_scaled(rgb9e5::encode_f64(mean.map(|c| c * scale)), scale_exponent);
@@ -423,6 +600,18 @@ fn relate<'a>(lattice: &Lattice, radiance: &[RadianceHarmonics]) -> Result<Prepa
         (mean, codes)
     });
     Ok(Prepared::Harmonics { vertices: vertices.collect(), scale_exponent })
+}
+
+/// The scale exponent of a file that has one already, if it holds `largest`; otherwise the smallest that does.
+fn settle(largest: f64, fixed: Option<i16>) -> Result<i16, EncodeError> {
+    let needed = scale_exponent(largest);
+    match fixed {
+        Some(file) if largest > f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(file)) => {
+            Err(EncodeError::ScaleExponent { file, needed })
+        }
+        Some(file) => Ok(file),
+        None => Ok(needed),
+    }
 }
 
 /// The smallest exponent e in range with `largest / 2^e` ≤ 65408; 0 for a grid without light (IVG-PACK-06).
@@ -479,6 +668,35 @@ impl fmt::Display for EncodeError {
                 "bundles would be too large, or too many, for the format; choose another number of vertices \
                  per slice",
             ),
+            Self::OtherFile { what } => write!(f, "the grid has another {what} than the file"),
+            Self::ScaleExponent { file, needed } => write!(
+                f,
+                "a value needs the scale exponent {needed}, and the file has {file}; write a new file"
+            ),
+            Self::NeverReplaced { id } => {
+                write!(f, "record {:#x} is never replaced; write a new file", id.stored())
+            }
+            Self::BundlesMissing => f.write_str("the order explicit needs the vertices of each bundle"),
+            Self::BundlesUnwanted { order } => {
+                write!(f, "bundles are given, but the order {} makes its own; use explicit", order.name())
+            }
+            Self::BundleEmpty { bundle } => write!(f, "bundle {bundle} has no vertex; leave it out"),
+            Self::BundleTooLarge { bundle, found, most } => write!(
+                f,
+                "bundle {bundle} has {found} vertices, but vertices per slice times the longest axis is {most}"
+            ),
+            Self::VertexOutside { bundle, vertex } => {
+                write!(f, "bundle {bundle} names vertex {vertex}, which the lattice does not have")
+            }
+            Self::VertexIsCorner { bundle, vertex: [i, j, k] } => {
+                write!(f, "bundle {bundle} names vertex ({i}, {j}, {k}), a corner; corners are in no bundle")
+            }
+            Self::VertexTwice { bundle, vertex: [i, j, k] } => {
+                write!(f, "bundle {bundle} names vertex ({i}, {j}, {k}), which was named before")
+            }
+            Self::VertexMissing { vertex: [i, j, k] } => {
+                write!(f, "vertex ({i}, {j}, {k}) is valid and in no bundle")
+            }
             Self::EdgeOutside { vertex: [i, j, k] } => {
                 write!(f, "vertex ({i}, {j}, {k}) has a blocked edge that leads out of the lattice")
             }

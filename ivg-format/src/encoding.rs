@@ -121,31 +121,45 @@ pub enum Order {
     /// Some vertices of every slice across the longest axis, each slice in its own permutation (IVG-ORD-07).
     #[default]
     Slices,
+    /// A recursive spread over the volume: every prefix covers all of it evenly (IVG-OCT-02).
+    Octree,
+    /// Each bundle lists its vertices, so that a writer can send what matters most first (IVG-DIRE-01).
+    Explicit,
 }
 
 impl Order {
+    /// Every order that this crate has, in the order of their ids.
+    pub const ALL: &'static [Self] = &[Self::Slices, Self::Octree, Self::Explicit];
+
     /// The number in the registry, as stored in the header.
     #[must_use]
     pub const fn id(self) -> u16 {
         match self {
             Self::Slices => 1,
+            Self::Octree => 2,
+            Self::Explicit => 3,
         }
     }
 
     /// The order with this registry number, if this crate has it.
     #[must_use]
-    pub const fn from_id(id: u16) -> Option<Self> {
-        match id {
-            1 => Some(Self::Slices),
-            _ => None,
-        }
+    pub fn from_id(id: u16) -> Option<Self> {
+        Self::ALL.iter().copied().find(|order| order.id() == id)
     }
 
-    /// The name in the registry.
+    /// The name in the registry, as users write it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Slices => "slices",
+            Self::Octree => "octree",
+            Self::Explicit => "explicit",
         }
+    }
+
+    /// The order with this registry name, if this crate has it.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|order| order.name() == name)
     }
 }

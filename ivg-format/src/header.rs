@@ -1,16 +1,17 @@
-//! The header: what a file holds and where each record lies, without reading anything else of it.
+//! The header: what a file holds and where each record lies, without reading a record.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::arithmetic_side_effects))]
 
 use crate::code::codes;
+use crate::directory::{Bounds, DIRECTORY, Directory};
 use crate::encoding::{Encoding, Order, Units};
 use crate::lattice::{Lattice, LatticeError};
 use crate::limits::Limits;
-use crate::order::{BundleVertices, Slices};
+use crate::order::{BundleVertices, Rule};
 use crate::wire::{FORMAT, HEADER_BYTES, Specific, at};
 use core::ops::Range;
 use ivg_wire::{
-    ByteOffset, COMMON_HEADER_BYTES, Code, CommonHeader, ContentId, END_PAYLOAD, END_RECORD, Error, Maximum,
-    Part, Step, record_len, seal_header,
+    ByteOffset, COMMON_HEADER_BYTES, ChunkArea, Code, CommonHeader, ContentId, END_PAYLOAD, END_RECORD,
+    Error, Maximum, Part, Step, record_len, seal_header,
 };
 use zerocopy::{FromBytes, IntoBytes};
 
@@ -44,10 +45,22 @@ impl RecordId {
             Self::End => END_RECORD,
         }
     }
+
+    /// The record with this stored id.
+    #[must_use]
+    pub const fn from_stored(id: u32) -> Self {
+        match id {
+            0 => Self::Corners,
+            END_RECORD => Self::End,
+            FIRST_VALIDITY.. => Self::Validity(id.saturating_sub(FIRST_VALIDITY)),
+            _ => Self::Bundle(id),
+        }
+    }
 }
 
-/// A header that has been read and checked, or that an encoder is about to write.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A header that has been read and checked, or that an encoder is about to write. It says where every record lies: for
+/// the order `explicit`, the directory behind it is part of it. Cloning it is cheap.
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Header {
     /// Minor version of the file.
@@ -80,26 +93,85 @@ pub struct Header {
     pub validity_records: u32,
     /// What the numbers measure.
     pub units: Units,
+    /// Of each bundle, for the order `explicit`; empty for others.
+    pub(crate) directory: Directory,
+}
+
+/// A header and what was read of the file with it.
+pub(crate) struct HeaderRead {
+    /// The header, its directory included.
+    pub(crate) header: Header,
+    /// The chunks that have not been read.
+    pub(crate) chunks: ChunkArea,
 }
 
 impl Header {
-    /// Reads and checks the header that begins `input`.
+    /// Reads and checks the header that begins `input`; for the order `explicit`, the directory behind it too, so that
+    /// a header never lacks the place of a record. What is wrong with the header itself is reported before the
+    /// directory is there.
     ///
     /// # Errors
     ///
-    /// The common part first, see [`CommonHeader::read`]; then the fields in the order in which they are
-    /// stored; then the limits; then the file's length. Each at the offset of its field.
+    /// The common part first, see [`CommonHeader::read`]; then the fields in the order of IVG-HDR-01; then the limits;
+    /// then the directory (IVG-DIRE-03); then the file's length. Each at the offset of its field.
     pub fn read(input: &[u8], limits: &Limits) -> Result<Step<Self>, Error> {
-        match CommonHeader::read(input, &FORMAT, &limits.wire)? {
-            Step::NeedMore(more) => Ok(Step::NeedMore(more)),
-            Step::Consumed(length, common) => {
-                let specific = input.get(COMMON_HEADER_BYTES..length).unwrap_or(&[]);
-                let Ok((specific, _)) = Specific::ref_from_prefix(specific) else {
-                    return Err(fail(ivg_wire::codes::HEADER_BYTES, 20));
-                };
-                Self::check(&common, specific, limits).map(|header| Step::Consumed(length, header))
-            }
+        Ok(Self::read_with_chunks(input, limits)?.map(|read| read.header))
+    }
+
+    /// As [`Header::read`], and where the chunks that follow lie.
+    pub(crate) fn read_with_chunks(input: &[u8], limits: &Limits) -> Result<Step<HeaderRead>, Error> {
+        let (length, common) = match CommonHeader::read(input, &FORMAT, &limits.wire)? {
+            Step::NeedMore(more) => return Ok(Step::NeedMore(more)),
+            Step::Consumed(length, common) => (length, common),
+        };
+        let (specific, rest) = input.split_at_checked(length).unwrap_or((input, &[]));
+        let specific = specific.get(COMMON_HEADER_BYTES..).unwrap_or(&[]);
+        let Ok((specific, _)) = Specific::ref_from_prefix(specific) else {
+            return Err(fail(ivg_wire::codes::HEADER_BYTES, 20));
+        };
+        let mut header = Self::check(&common, specific, limits)?;
+        let mut chunks =
+            ChunkArea::new(u64::from(header.header_bytes), header.data_offset, header.content_id);
+        let used = match header.read_directory(&mut chunks, rest, limits)? {
+            Step::NeedMore(more) => return Ok(Step::NeedMore(more)),
+            Step::Consumed(used, ()) => used,
+        };
+        common.expect_file_bytes(header.implied_file_bytes())?;
+        Ok(Step::Consumed(length.saturating_add(used), HeaderRead { header, chunks }))
+    }
+
+    /// Reads the first chunk, where it is the directory (IVG-DIRE-01).
+    fn read_directory(
+        &mut self,
+        chunks: &mut ChunkArea,
+        input: &[u8],
+        limits: &Limits,
+    ) -> Result<Step<()>, Error> {
+        if self.order != Order::Explicit {
+            return Ok(Step::Consumed(0, ()));
         }
+        let missing =
+            |part| Err(Error::new(codes::DIRECTORY_ABSENT, ByteOffset(u64::from(self.header_bytes)), part));
+        if chunks.is_done() {
+            return missing(Part::Chunks);
+        }
+        let (used, chunk) = match chunks.read(input, &limits.wire)? {
+            Step::NeedMore(more) => return Ok(Step::NeedMore(more)),
+            Step::Consumed(used, chunk) => (used, chunk),
+        };
+        if chunk.kind != DIRECTORY {
+            return missing(Part::Chunk(chunk.kind));
+        }
+        let bounds = Bounds {
+            bundles: self.bundle_count,
+            vertices: self.inner_vertices(),
+            may_lack: self.validity_records > 0,
+            per_bundle: self.largest_bundle(),
+            vertex_bytes: self.encoding.bytes_per_vertex(),
+            record_limit: limits.wire.record_bytes,
+        };
+        self.directory = Directory::read(&chunk, &bounds)?;
+        Ok(Step::Consumed(used, ()))
     }
 
     fn check(common: &CommonHeader, wire: &Specific, limits: &Limits) -> Result<Self, Error> {
@@ -137,12 +209,12 @@ impl Header {
             bundle_count: wire.bundle_count.get(),
             validity_records: wire.validity_records.get(),
             units: Units::from_id(wire.units).ok_or(fail(codes::UNITS_UNKNOWN, at::UNITS))?,
+            directory: Directory::default(),
         };
         header.check_layout(limits)?;
         if wire.reserved != [0; 7] {
             return Err(fail(ivg_wire::codes::RESERVED, at::RESERVED));
         }
-        common.expect_file_bytes(header.implied_file_bytes())?;
         Ok(header)
     }
 
@@ -151,8 +223,12 @@ impl Header {
         if self.vertices_per_slice == 0 {
             return Err(fail(codes::SLICE_VERTICES, at::VERTICES_PER_SLICE));
         }
-        if u64::from(self.bundle_count) != self.slices().bundle_count() || self.bundle_count >= FIRST_VALIDITY
-        {
+        let bundles = u64::from(self.bundle_count);
+        let fits = match self.rule() {
+            Some(rule) => bundles == rule.bundle_count(),
+            None => bundles <= self.inner_vertices(),
+        };
+        if !fits || self.bundle_count >= FIRST_VALIDITY {
             return Err(fail(codes::BUNDLE_COUNT, at::BUNDLE_COUNT));
         }
         let blocks = self.lattice.vertex_count().div_ceil(VALIDITY_BLOCK);
@@ -176,7 +252,7 @@ impl Header {
 
     /// The header's bytes, checksum included.
     #[must_use]
-    pub(crate) fn to_bytes(self) -> [u8; HEADER_BYTES] {
+    pub(crate) fn to_bytes(&self) -> [u8; HEADER_BYTES] {
         let common = CommonHeader {
             minor: self.minor,
             required_features: 0,
@@ -208,10 +284,20 @@ impl Header {
         bytes
     }
 
-    pub(crate) fn slices(&self) -> Slices {
-        match self.order {
-            Order::Slices => Slices::new(&self.lattice, self.vertices_per_slice, self.seed),
-        }
+    /// By what rule bundles take the vertices; `None` where each lists its own.
+    pub(crate) fn rule(&self) -> Option<Rule> {
+        Rule::new(self.order, &self.lattice, self.vertices_per_slice, self.seed)
+    }
+
+    /// Vertices that are not corners.
+    pub(crate) fn inner_vertices(&self) -> u64 {
+        self.lattice.vertex_count().saturating_sub(self.record_vertices(RecordId::Corners))
+    }
+
+    /// The most vertices that a bundle of the order `explicit` may have (IVG-DIRE-03).
+    pub(crate) fn largest_bundle(&self) -> u64 {
+        let longest = self.lattice.dims.iter().fold(1, |most, &n| most.max(u64::from(n)));
+        u64::from(self.vertices_per_slice).saturating_mul(longest)
     }
 
     /// Number of records, the end record included.
@@ -226,7 +312,10 @@ impl Header {
     pub fn record_vertices(&self, id: RecordId) -> u64 {
         match id {
             RecordId::Corners => self.lattice.dims.iter().map(|&n| u64::from(n.min(2))).product(),
-            RecordId::Bundle(k) if (1..=self.bundle_count).contains(&k) => self.slices().bundle_len(k),
+            RecordId::Bundle(k) if (1..=self.bundle_count).contains(&k) => match self.rule() {
+                Some(rule) => rule.bundle_len(k),
+                None => self.directory.get(k).map_or(0, |entry| u64::from(entry.vertices)),
+            },
             RecordId::Validity(j) if j < self.validity_records => {
                 let first = u64::from(j).saturating_mul(VALIDITY_BLOCK);
                 self.lattice.vertex_count().saturating_sub(first).min(VALIDITY_BLOCK)
@@ -241,14 +330,24 @@ impl Header {
         let vertices = self.record_vertices(id);
         match id {
             RecordId::Corners | RecordId::Bundle(_) => {
-                vertices.saturating_mul(self.encoding.bytes_per_vertex())
+                vertices.saturating_mul(self.encoding.bytes_per_vertex()).saturating_add(self.index_bytes(id))
             }
             RecordId::Validity(_) => vertices.saturating_add(vertices.saturating_mul(3).div_ceil(8)),
             RecordId::End => END_PAYLOAD,
         }
     }
 
-    /// The bytes of the file in which a record lies: closed form, whatever the number of records (IVG-REC-03).
+    /// Bytes of the list of vertices that begins a record's payload: 0 but for bundles of the order `explicit`.
+    #[must_use]
+    pub fn index_bytes(&self, id: RecordId) -> u64 {
+        match id {
+            RecordId::Bundle(k) => self.directory.get(k).map_or(0, |entry| u64::from(entry.index_bytes)),
+            _ => 0,
+        }
+    }
+
+    /// The bytes of the file in which a record lies, whatever the number of records: closed form, or from the
+    /// directory (IVG-REC-03).
     ///
     /// Empty for a record that the file does not have.
     #[must_use]
@@ -285,19 +384,31 @@ impl Header {
             RecordId::End => self.bundle_count,
             _ => 0,
         };
-        if bundles > 0 {
-            // All bundles to which every slice gives its full share are equally long. An inner slice has at most
-            // four vertices more than an outer one, so that at most four bundles come after them.
-            let full = u64::from(bundles).min(self.slices().full_bundles());
-            start = start.checked_add(full.checked_mul(len(RecordId::Bundle(1))?)?)?;
-            for k in u32::try_from(full).ok()?..bundles {
-                start = start.checked_add(len(RecordId::Bundle(k.checked_add(1)?))?)?;
-            }
-        }
+        start = start.checked_add(self.bytes_of_bundles(bundles)?)?;
         Some(start..start.checked_add(len(id)?)?)
     }
 
-    /// The length of the longest record.
+    /// Bytes of the first `count` bundles.
+    fn bytes_of_bundles(&self, count: u32) -> Option<u64> {
+        let Some(rule) = self.rule() else {
+            let vertex_bytes = self.encoding.bytes_per_vertex();
+            return match self.directory.get(count.checked_add(1)?) {
+                Some(next) => Some(next.start),
+                None => Some(self.directory.bundle_bytes(vertex_bytes)),
+            };
+        };
+        // The leading bundles are equally long. Of slices, an inner one has at most four vertices more than an outer
+        // one, so that at most four bundles come after them.
+        let len = |k| record_len(self.payload_len(RecordId::Bundle(k)));
+        let full = u64::from(count).min(rule.full_bundles());
+        let mut bytes = if full > 0 { full.checked_mul(len(1)?)? } else { 0 };
+        for k in u32::try_from(full).ok()?..count {
+            bytes = bytes.checked_add(len(k.checked_add(1)?)?)?;
+        }
+        Some(bytes)
+    }
+
+    /// The length of the longest record, without bundles that list their vertices.
     fn largest_record(&self) -> Option<u64> {
         let ids = [RecordId::Corners, RecordId::Validity(0), RecordId::Bundle(1), RecordId::End];
         ids.into_iter()
@@ -331,18 +442,21 @@ impl Header {
         core::iter::successors(Some(RecordId::Corners), |&id| self.next_record(id))
     }
 
-    /// The linear indices of the vertices in bundle `k`, counted from 1, in stored order; none if the file
-    /// has no such bundle.
+    /// The linear indices of the vertices in bundle `k`, counted from 1, in stored order. `None` if the file has no such
+    /// bundle, and for the order `explicit`, whose bundles list their vertices themselves: see
+    /// [`Bundle::vertices`](crate::Bundle::vertices).
     #[must_use]
-    pub fn bundle_vertices(&self, k: u32) -> BundleVertices {
-        let k = if k <= self.bundle_count { k } else { 0 };
-        BundleVertices::new(self.slices(), self.lattice, k)
+    pub fn bundle_vertices(&self, k: u32) -> Option<BundleVertices> {
+        let rule = self.rule()?;
+        (1..=self.bundle_count).contains(&k).then(|| rule.vertices(&self.lattice, k))
     }
 
-    /// The linear index of vertex `n`, counted from 0, of bundle `k`, without walking there.
+    /// The linear index of vertex `n`, counted from 0, of bundle `k`, without walking there. `None` if the file has no
+    /// such vertex, and for the order `explicit`.
     #[must_use]
     pub fn bundle_vertex(&self, k: u32, n: u64) -> Option<u64> {
-        (1..=self.bundle_count).contains(&k).then(|| self.slices().vertex(&self.lattice, k, n)).flatten()
+        let rule = self.rule()?;
+        (1..=self.bundle_count).contains(&k).then(|| rule.vertex(&self.lattice, k, n)).flatten()
     }
 }
 

@@ -10,6 +10,7 @@ use ivg_wire::{ByteOffset, Error, Part};
 /// Validity and blocked edges of up to 4096 vertices, consecutive in linear index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValidityBlock<'a> {
+    header: &'a Header,
     id: RecordId,
     generation: u32,
     first: u64,
@@ -20,7 +21,7 @@ pub struct ValidityBlock<'a> {
 impl<'a> ValidityBlock<'a> {
     /// Splits and checks a payload whose length is the one that the header gives.
     pub(crate) fn check(
-        header: &Header,
+        header: &'a Header,
         j: u32,
         generation: u32,
         payload: &'a [u8],
@@ -36,7 +37,7 @@ impl<'a> ValidityBlock<'a> {
             return fail(ivg_wire::codes::RECORD_LENGTH, 0);
         };
         let first = u64::from(j).saturating_mul(VALIDITY_BLOCK);
-        let block = Self { id, generation, first, validity, edges };
+        let block = Self { header, id, generation, first, validity, edges };
         let used = count.saturating_mul(3) % 8;
         if let Some(&last) = edges.last().filter(|_| used != 0)
             && last >> used != 0
@@ -58,6 +59,12 @@ impl<'a> ValidityBlock<'a> {
             }
         }
         Ok(block)
+    }
+
+    /// The header of the file.
+    #[must_use]
+    pub const fn header(&self) -> &'a Header {
+        self.header
     }
 
     /// Which record this is.

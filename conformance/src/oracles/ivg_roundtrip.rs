@@ -124,6 +124,7 @@ impl Grid {
             values: self.values.borrowed(),
             validity: self.validity.as_deref(),
             blocked_edges: self.blocked_edges.as_deref(),
+            bundles: None,
             lights: self.lights,
             meta: self.meta,
         }

@@ -32,7 +32,7 @@ fn each_header_field_has_its_error() {
     refused(&patched(96, &f64(0.0)), codes::STEP, 96);
     refused(&patched(96, &f64(-1.0)), codes::STEP, 96);
     refused(&patched(112, &[0, 0]), codes::ORDER_FORBIDDEN, 112);
-    for order in [2u8, 3, 4, 255] {
+    for order in [4u8, 5, 255] {
         refused(&patched(112, &[order, 0]), codes::ORDER_UNKNOWN, 112);
     }
     for scale in [-126i16, 113, i16::MIN, i16::MAX] {

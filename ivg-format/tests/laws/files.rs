@@ -2,7 +2,7 @@
 
 use ivg_format::{
     BakedLight, EncodeOptions, Encoding, Error, Event, GridSource, Header, HemisphereVectors, Lattice,
-    Limits, Quantity, RadianceHarmonics, Step, decode_all, encode,
+    Limits, Order, Quantity, RadianceHarmonics, Step, decode_all, encode,
 };
 use std::ops::Range;
 
@@ -73,6 +73,47 @@ pub(crate) fn full() -> Vec<u8> {
     encode(&source, &options(Encoding::PackedOct24, 2)).unwrap()
 }
 
+/// A file of another order than `slices`, of 42 bytes a vertex, without chunks but the directory.
+pub(crate) fn ordered(dims: [u16; 3], order: Order, vertices_per_slice: u32) -> Vec<u8> {
+    let lattice = lattice(dims);
+    let (values, bundles) = (vectors(&lattice), bundles(&lattice, vertices_per_slice, |_| true));
+    let source = GridSource {
+        bundles: (order == Order::Explicit).then_some(&bundles),
+        ..GridSource::new(lattice, &values)
+    };
+    encode(&source, &EncodeOptions { order, ..options(Encoding::PackedOct24, vertices_per_slice) }).unwrap()
+}
+
+/// The vertices that `keep` keeps, corners left out, scattered over bundles of 1, 2, 3 … vertices, as many as allowed.
+pub(crate) fn bundles(lattice: &Lattice, per_slice: u32, keep: impl Fn(u64) -> bool) -> Vec<Vec<u64>> {
+    let most = per_slice as usize * usize::from(lattice.dims.into_iter().max().unwrap());
+    let count = lattice.vertex_count();
+    let mut left: Vec<u64> = (0..count).filter(|&v| !lattice.is_corner(v) && keep(v)).collect();
+    left.sort_by_key(|v| (v * 7919 % 65_537, *v));
+    let mut bundles: Vec<Vec<u64>> = vec![];
+    while !left.is_empty() {
+        let size = (bundles.len() + 1).min(most).min(left.len());
+        bundles.push(left.drain(..size).collect());
+    }
+    bundles
+}
+
+/// A file of the order `explicit` with all chunks, in which the vertices inside geometry are in no bundle.
+pub(crate) fn full_explicit() -> Vec<u8> {
+    let lattice = lattice([3, 4, 3]);
+    let validity: Vec<u8> = (0..36).map(|v| if v % 5 == 4 { 0 } else { 255 }).collect();
+    let (values, bundles) = (vectors(&lattice), bundles(&lattice, 2, |v| validity[v as usize] != 0));
+    let lights = [BakedLight { name: "lamp", direct_included: false }];
+    let source = GridSource {
+        validity: Some(&validity),
+        bundles: Some(&bundles),
+        lights: &lights,
+        meta: &[("generator", "laws")],
+        ..GridSource::new(lattice, &values)
+    };
+    encode(&source, &EncodeOptions { order: Order::Explicit, ..options(Encoding::PackedOct24, 2) }).unwrap()
+}
+
 pub(crate) fn plain(dims: [u16; 3], encoding: Encoding, vertices_per_slice: u32) -> Vec<u8> {
     let lattice = lattice(dims);
     let options = options(encoding, vertices_per_slice);
@@ -92,6 +133,10 @@ pub(crate) fn samples() -> Vec<Vec<u8>> {
         plain([1, 3, 2], Encoding::PackedOct24, 1),
         plain([1, 1, 4], Encoding::VectorsF32, 2),
         plain([2, 3, 1], Encoding::Sh2, 1),
+        ordered([2, 3, 3], Order::Octree, 2),
+        ordered([2, 3, 3], Order::Explicit, 2),
+        ordered([2, 1, 2], Order::Explicit, 1),
+        full_explicit(),
     ]
 }
 
@@ -156,15 +201,28 @@ pub(crate) fn edited(bytes: &[u8], edit: impl FnOnce(&mut [u8])) -> Vec<u8> {
     out
 }
 
-/// The file with one more chunk in front of the others, and everything that follows from it.
+/// The file with one more chunk in front of the others, but behind the directory, and everything that follows from it.
 pub(crate) fn with_chunk(bytes: &[u8], kind: [u8; 4], critical: bool, payload: &[u8]) -> Vec<u8> {
+    let header = header(bytes);
+    let at = if header.order == Order::Explicit { envelopes(bytes)[0].end } else { 144 };
+    with_chunk_at(bytes, at, kind, critical, payload)
+}
+
+/// The file with one more chunk at byte `at`, and everything that follows from it.
+pub(crate) fn with_chunk_at(
+    bytes: &[u8],
+    at: usize,
+    kind: [u8; 4],
+    critical: bool,
+    payload: &[u8],
+) -> Vec<u8> {
     let header = header(bytes);
     let mut chunk = vec![];
     ivg_wire::write_chunk(&mut chunk, ivg_wire::ChunkKind(kind), critical, payload, header.content_id);
     let longer = chunk.len() as u64;
-    let mut out = bytes[..144].to_vec();
+    let mut out = bytes[..at].to_vec();
     out.extend(chunk);
-    out.extend(&bytes[144..]);
+    out.extend(&bytes[at..]);
     out[40..48].copy_from_slice(&(header.data_offset + longer).to_le_bytes());
     out[48..56].copy_from_slice(&(header.file_bytes + longer).to_le_bytes());
     ivg_wire::seal_header(&mut out[..144]);

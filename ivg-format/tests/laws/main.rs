@@ -1,6 +1,7 @@
 //! The laws of the .ivg format, on small files built here.
 
 mod damage;
+mod explicit;
 mod fields;
 mod files;
 mod judgement;
@@ -8,3 +9,4 @@ mod orders;
 mod roundtrip;
 mod sizes;
 mod splits;
+mod updates;

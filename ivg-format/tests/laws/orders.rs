@@ -1,7 +1,7 @@
 //! What the header says of the layout against what lies in the file.
 
-use crate::files::{envelopes, header, lattice, options, plain, samples, vectors};
-use ivg_format::{Encoding, Event, GridSource, Limits, RecordId, decode_all, encode};
+use crate::files::{describe, envelopes, header, lattice, options, ordered, plain, samples, vectors};
+use ivg_format::{Encoding, Event, GridSource, Limits, Order, RecordId, decode_all, decode_record, encode};
 use quickcheck::quickcheck;
 use std::collections::BTreeSet;
 
@@ -27,17 +27,24 @@ fn the_closed_form_is_the_layout_of_the_file() {
     }
     for dims in [[5, 3, 3], [3, 3, 9], [2, 2, 9], [1, 5, 5], [4, 4, 4], [7, 1, 1], [3, 2, 2], [2, 3, 1]] {
         for per_slice in [1, 2, 3, 4, 5, 8, 64] {
-            check_ranges(&plain(dims, Encoding::PackedOct24, per_slice));
+            for &order in Order::ALL {
+                check_ranges(&ordered(dims, order, per_slice));
+            }
         }
     }
 }
 
 #[test]
 fn every_vertex_arrives_exactly_once_and_corners_first() {
-    let file = plain([5, 4, 3], Encoding::PackedOct24, 2);
+    for &order in Order::ALL {
+        every_vertex_arrives_once(&ordered([5, 4, 3], order, 2));
+    }
+}
+
+fn every_vertex_arrives_once(file: &[u8]) {
     let mut seen = BTreeSet::new();
     let mut corners = vec![];
-    decode_all(&file, &Limits::default(), |event| {
+    decode_all(file, &Limits::default(), |event| {
         if let Event::Corners(bundle) | Event::Bundle(bundle) = &event {
             assert_eq!(bundle.vertices().len(), bundle.len());
             for vertex in bundle.vertices() {
@@ -55,14 +62,19 @@ fn every_vertex_arrives_exactly_once_and_corners_first() {
 
 #[test]
 fn a_vertex_of_a_bundle_can_be_asked_for_alone() {
-    let header = header(&plain([3, 4, 5], Encoding::PackedOct24, 3));
-    for k in 0..=header.bundle_count + 1 {
-        let all: Vec<u64> = header.bundle_vertices(k).collect();
-        assert_eq!(all.is_empty(), k == 0 || k > header.bundle_count);
-        for n in 0..all.len() as u64 + 2 {
-            assert_eq!(header.bundle_vertex(k, n), all.get(n as usize).copied());
+    for order in [Order::Slices, Order::Octree] {
+        let header = header(&ordered([3, 4, 5], order, 3));
+        for k in 0..=header.bundle_count + 1 {
+            let all: Vec<u64> = header.bundle_vertices(k).into_iter().flatten().collect();
+            assert_eq!(all.is_empty(), k == 0 || k > header.bundle_count);
+            for n in 0..all.len() as u64 + 2 {
+                assert_eq!(header.bundle_vertex(k, n), all.get(n as usize).copied());
+            }
         }
     }
+    // Where bundles list their vertices, the header does not pretend to know them.
+    let header = header(&ordered([3, 4, 5], Order::Explicit, 3));
+    assert!(header.bundle_vertices(1).is_none() && header.bundle_vertex(1, 0).is_none());
 }
 
 #[test]
@@ -108,10 +120,35 @@ fn a_huge_lattice_has_ranges_without_being_walked() {
     assert!(envelopes(&plain([3, 3, 3], Encoding::PackedOct24, 64)).len() == 3);
 }
 
+/// What each record of a file says, read alone in the order in which `next` draws them from those left.
+fn alone(file: &[u8], mut next: impl FnMut(usize) -> usize) -> Vec<String> {
+    let header = header(file);
+    let mut left: Vec<RecordId> = header.records().collect();
+    let mut found = vec![];
+    while !left.is_empty() {
+        let id = left.swap_remove(next(left.len()));
+        let range = header.record_range(id);
+        let bytes = &file[range.start as usize..range.end as usize];
+        found.push(describe(&decode_record(&header, id, bytes).unwrap()));
+    }
+    found.sort();
+    found
+}
+
 quickcheck! {
+    fn records_in_any_order_are_those_of_the_file(which: u8, draws: Vec<u8>) -> bool {
+        // As text with every value read: what a reader holds after all records is the same.
+        let samples = samples();
+        let file = &samples[usize::from(which) % samples.len()];
+        let mut draws = draws.into_iter().cycle();
+        alone(file, |_| 0) == alone(file, |left| usize::from(draws.next().unwrap_or(0)) % left)
+    }
+
     fn any_lattice_has_the_layout_that_its_header_says(dims: (u8, u8, u8), per_slice: u8) -> bool {
         let dims = [dims.0, dims.1, dims.2].map(|n| u16::from(n % 7 + 1));
-        check_ranges(&plain(dims, Encoding::PackedOct24, u32::from(per_slice % 20) + 1));
+        for &order in Order::ALL {
+            check_ranges(&ordered(dims, order, u32::from(per_slice % 20) + 1));
+        }
         true
     }
 }

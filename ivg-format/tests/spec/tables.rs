@@ -50,6 +50,9 @@ fn expected(document: &str, name: &str) -> String {
         }
         ["orders", order] => super::orders::markdown(order),
         ["values", quantiser] => super::values::markdown(quantiser),
+        ["derived", _] => {
+            markdown(&rows("limits", "derived"), &["name", "text", "maximum", "guaranteed", "default"])
+        }
         ["registry", key] => {
             let columns: &[&str] = match key {
                 "encodings" => &["id", "name", "bytes", "status", "text"],
@@ -154,8 +157,10 @@ fn registries_and_limits_equal_their_rows() {
         }
     }
     for row in rows("registry", "orders") {
-        let order = Order::from_id(row["id"].as_integer().unwrap() as u16);
-        assert_eq!(order.map(Order::name), (row["status"].as_str() == Some("described")).then_some("slices"));
+        let (id, name) = (row["id"].as_integer().unwrap() as u16, row["name"].as_str().unwrap());
+        let order = Order::from_id(id);
+        assert_eq!(order.map(Order::name), (row["status"].as_str() == Some("described")).then_some(name));
+        assert_eq!(order, Order::from_name(name));
     }
     for row in rows("registry", "units") {
         let units = Units::from_id(row["id"].as_integer().unwrap() as u8).unwrap();
@@ -163,7 +168,8 @@ fn registries_and_limits_equal_their_rows() {
     }
     let chunks = rows("registry", "chunks");
     let kinds: Vec<_> = chunks.iter().map(|row| row["type"].as_str().unwrap().to_string()).collect();
-    assert_eq!(kinds, [ivg_format::LIGHTS, ivg_format::METADATA].map(|kind| kind.to_string()));
+    let ours = [ivg_format::DIRECTORY, ivg_format::LIGHTS, ivg_format::METADATA];
+    assert_eq!(kinds, ours.map(|kind| kind.to_string()));
     let limits = of_format(rows("limits", "limit"), "ivg");
     assert_eq!(limits.len(), 1);
     assert_eq!(limits[0]["default"].as_integer(), Some(Limits::new().vertices as i64));
@@ -194,4 +200,33 @@ fn chunk_types_are_four_capital_letters() {
     })
     .unwrap();
     assert_eq!(kinds, ["LITE", "META"]);
+}
+
+#[test]
+fn counts_without_a_limit_are_bounded_by_those_that_have_one() {
+    let limits = rows("limits", "limit");
+    let derived = rows("limits", "derived");
+    for column in ["maximum", "guaranteed", "default"] {
+        let number = |rows: &[Table], name: &str| {
+            let row = rows.iter().find(|row| row["name"].as_str() == Some(name)).unwrap();
+            row[column].as_integer().unwrap()
+        };
+        // Payloads: 20 bytes of envelope of a chunk (COM-CHK-02), 12 of a record (COM-REC-01).
+        let chunk = number(&limits, "chunk_bytes") - 20;
+        let record = number(&limits, "record_bytes") - 12;
+        // Ids of validity records are the reason for the one maximum that is not a quotient (IVG-VAL-01).
+        let blocks = ((number(&limits, "vertices") + 4095) / 4096).min((1 << 31) - 1);
+        let expected = [
+            ("lights", (chunk - 4) / 4),
+            ("light_name", (chunk - 8).min(65_535)),
+            ("metadata", chunk),
+            ("directory", chunk / 8),
+            ("validity_records", blocks),
+            ("bundle", record / 216),
+        ];
+        assert_eq!(derived.len(), expected.len());
+        for (name, expected) in expected {
+            assert_eq!(number(&derived, name), expected, "{name}, {column}");
+        }
+    }
 }

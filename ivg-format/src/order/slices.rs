@@ -156,6 +156,14 @@ impl Slices {
         Some(self.locate(lattice, &self.permutation(slice as u32), slice, rank as u32))
     }
 
+    /// The vertices of bundle `k`, counted from 1; none for 0.
+    pub(crate) fn walk(&self, lattice: &Lattice, k: u32) -> Walk {
+        let left = if k == 0 { 0 } else { self.bundle_len(k) };
+        let share = self.share(self.outer, k);
+        let permutation = self.permutation(0);
+        Walk { slices: *self, lattice: *lattice, k, slice: 0, place: 0, share, permutation, left }
+    }
+
     fn is_outer(&self, slice: u64) -> bool {
         slice == 0 || slice + 1 == self.slice_count()
     }
@@ -189,7 +197,7 @@ impl Slices {
 
 /// The vertices of a bundle in stored order: slices ascending, each in the order of its permutation.
 #[derive(Clone, Debug)]
-pub struct BundleVertices {
+pub(crate) struct Walk {
     slices: Slices,
     lattice: Lattice,
     k: u32,
@@ -200,18 +208,8 @@ pub struct BundleVertices {
     left: u64,
 }
 
-impl BundleVertices {
-    pub(crate) fn new(slices: Slices, lattice: Lattice, k: u32) -> Self {
-        let left = if k == 0 { 0 } else { slices.bundle_len(k) };
-        let share = slices.share(slices.outer, k);
-        Self { slices, lattice, k, slice: 0, place: 0, share, permutation: slices.permutation(0), left }
-    }
-}
-
-impl Iterator for BundleVertices {
-    type Item = u64;
-
-    fn next(&mut self) -> Option<u64> {
+impl Walk {
+    pub(crate) fn next(&mut self) -> Option<u64> {
         self.left = self.left.checked_sub(1)?;
         while self.place >= self.share {
             self.slice += 1;
@@ -225,12 +223,10 @@ impl Iterator for BundleVertices {
         Some(self.slices.locate(&self.lattice, &self.permutation, self.slice, rank as u32))
     }
 
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        usize::try_from(self.left).map_or((usize::MAX, None), |left| (left, Some(left)))
+    pub(crate) const fn left(&self) -> u64 {
+        self.left
     }
 }
-
-impl ExactSizeIterator for BundleVertices {}
 
 #[cfg(test)]
 mod tests;

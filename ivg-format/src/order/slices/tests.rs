@@ -1,5 +1,6 @@
 extern crate std;
 use super::*;
+use crate::order::Rule;
 use alloc::vec;
 use alloc::vec::Vec;
 use quickcheck::quickcheck;
@@ -12,7 +13,7 @@ fn lattice(dims: [u16; 3]) -> Lattice {
 fn bundles(dims: [u16; 3], per_slice: u32, seed: u64) -> Vec<Vec<u64>> {
     let slices = Slices::new(&lattice(dims), per_slice, seed);
     (1..=slices.bundle_count() as u32)
-        .map(|k| BundleVertices::new(slices, lattice(dims), k).collect())
+        .map(|k| Rule::Slices(slices).vertices(&lattice(dims), k).collect())
         .collect()
 }
 
