@@ -75,6 +75,31 @@ fn chunks_of_the_guaranteed_length_and_number_are_read() {
 }
 
 #[test]
+fn lists_as_long_as_a_guaranteed_chunk_are_read() {
+    let file = plain([2, 2, 2], Encoding::PackedOct24, 1);
+    // A count, and four bytes a light without a name: 16,378 of them fill the chunk.
+    let lights = |count: u32| {
+        let payload = [&count.to_le_bytes()[..], &[0; 4].repeat(count as usize)].concat();
+        judged(&with_chunk(&file, *b"LITE", false, &payload))
+    };
+    assert_eq!(lights(16_378), None);
+    assert_eq!(lights(16_379), limit(common::LIMIT_CHUNK_BYTES));
+    let name = |length: u16| {
+        let payload =
+            [&[1, 0, 0, 0, 0, 0][..], &length.to_le_bytes(), &vec![b'n'; usize::from(length)]].concat();
+        judged(&with_chunk(&file, *b"LITE", false, &payload))
+    };
+    assert_eq!(name(65_508), None);
+    assert_eq!(name(65_509), limit(common::LIMIT_CHUNK_BYTES));
+    let metadata = |length: usize| {
+        let payload = [&b"key="[..], &vec![b'v'; length - 5], b"\n"].concat();
+        judged(&with_chunk(&file, *b"META", false, &payload))
+    };
+    assert_eq!(metadata(65_516), None);
+    assert_eq!(metadata(65_517), limit(common::LIMIT_CHUNK_BYTES));
+}
+
+#[test]
 fn records_of_the_guaranteed_length_are_read() {
     // Slices of one vertex, so that a bundle holds every vertex but the two corners: 4854 × 216 + 12 bytes, 100 short
     // of 2²⁰.

@@ -73,5 +73,5 @@ fn orders_of_awkward_lattices_are_those_of_the_table() {
         }
     }
     let has = |name: &str| table.iter().filter(|row| row["order"].as_str() == Some(name)).count();
-    assert!(has("slices") >= 10, "the table was not read");
+    assert!(has("slices") >= 10 && has("octree") >= 10, "the table was not read");
 }

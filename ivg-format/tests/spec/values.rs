@@ -3,7 +3,7 @@
 use super::{read, rows};
 use ivg_format::quant::{direction, rgb9e5};
 use ivg_format::{
-    Decoder, EncodeOptions, Encoding, Event, GridSource, Header, Lattice, Limits, RecordId, encode,
+    Bundle, Decoder, EncodeOptions, Encoding, Event, GridSource, Header, Lattice, Limits, RecordId, encode,
 };
 use ivg_wire::{Step, seal, seal_header, splitmix64};
 use std::fmt::Write;
@@ -26,28 +26,28 @@ pub(super) fn markdown(quantiser: &str) -> String {
     let mut out = String::new();
     match quantiser {
         "rgb9e5" => out.push_str("| colour | code | |\n|---|---|---|\n"),
+        "ratio" => {
+            out.push_str("| c_0 | codes 1 to 8 | c_1 … c_8, as the bits of binary32 |\n|---|---|---|\n")
+        }
         _ => {
             out.push_str("| code | u, v | point | direction, as the bits of binary32 |\n|---|---|---|---|\n")
         }
     }
     for row in rows("values", quantiser) {
-        let code = row["code"].as_integer().unwrap();
-        match quantiser {
+        let code = |digits: usize| format!("0x{:0digits$X}", row["code"].as_integer().unwrap());
+        let line = match quantiser {
             "rgb9e5" => {
-                let colour = list(
-                    strings(&row["colour"])
-                        .iter()
-                        .map(|c| c.replace('-', "−").replace("nan", "NaN"))
-                        .collect(),
-                );
-                writeln!(out, "| {colour} | 0x{code:08X} | {} |", row["text"].as_str().unwrap()).unwrap();
+                let texts = strings(&row["colour"]);
+                let colour = texts.iter().map(|c| c.replace('-', "−").replace("nan", "NaN"));
+                [list(colour.collect()), code(8), row["text"].as_str().unwrap().into()].join(" | ")
             }
-            _ => {
-                let (map, point, direction) =
-                    (numbers(&row["map"]), numbers(&row["point"]), bits(&row["direction"]));
-                writeln!(out, "| 0x{code:06X} | {map} | {point} | {direction} |").unwrap();
+            "ratio" => {
+                let mean = row["mean"].as_str().unwrap().to_string();
+                [mean, numbers(&row["codes"]), bits(&row["coefficients"])].join(" | ")
             }
-        }
+            _ => [code(6), numbers(&row["map"]), numbers(&row["point"]), bits(&row["direction"])].join(" | "),
+        };
+        writeln!(out, "| {line} |").unwrap();
     }
     out
 }
@@ -111,25 +111,58 @@ fn positions_are_a_product_and_a_sum_each_rounded() {
     assert!(read("ivg.md").contains("2⁻⁵⁴"), "IVG-LAT-04 prints the result");
 }
 
-/// The x of red of the first hemisphere of a file of one vertex, `vectors-f32`, as read with a scale exponent.
-fn scaled(number: f32, scale_exponent: i16) -> f32 {
+#[test]
+fn harmonics_have_the_printed_bits() {
+    let table = rows("values", "ratio");
+    assert!(table.len() >= 3, "the table was not read");
     let lattice = Lattice::new([1, 1, 1], [0.0; 3], [0.0; 3]).unwrap();
-    let mut vectors = [[[[0.0; 3]; 3]; 6]];
-    vectors[0][0][0][0] = number;
-    let options = EncodeOptions { encoding: Encoding::VectorsF32, ..EncodeOptions::new() };
-    let mut file = encode(&GridSource::new(lattice, &vectors), &options).unwrap();
+    let radiance = [[[0.0; 9]; 3]];
+    let options = EncodeOptions { encoding: Encoding::Sh2, ..EncodeOptions::new() };
+    let file = encode(&GridSource::new(lattice, &radiance), &options).unwrap();
+    for row in table {
+        let mean: f32 = row["mean"].as_str().unwrap().parse().unwrap();
+        let codes: Vec<u8> = integers(&row["codes"]).iter().map(|&code| code as i8 as u8).collect();
+        // Red alone: its mean, and the first eight codes.
+        let payload = [&rgb9e5::encode([mean, 0.0, 0.0]).to_le_bytes()[..], &codes].concat();
+        let file = with_corner(&file, 0, &payload);
+        let [red, ..] = of_corner(&file, |bundle| bundle.radiance(0));
+        let bits: Vec<i64> = red[1..].iter().map(|c| i64::from(c.to_bits())).collect();
+        assert_eq!((red[0], bits), (mean, integers(&row["coefficients"])), "{row:?}");
+    }
+}
+
+/// The file of one vertex with another scale exponent, and bytes at the beginning of the corners' payload.
+fn with_corner(file: &[u8], scale_exponent: i16, payload: &[u8]) -> Vec<u8> {
+    let mut file = file.to_vec();
     file[114..116].copy_from_slice(&scale_exponent.to_le_bytes());
     seal_header(&mut file[..144]);
     let Ok(Step::Consumed(_, header)) = Header::read(&file, &Limits::default()) else { panic!("a header") };
-    seal(&mut file[144..144 + 228], header.content_id);
-    let (mut decoder, mut rest) = (Decoder::new(Limits::default()), &file[..]);
+    let range = header.record_range(RecordId::Corners);
+    let record = &mut file[range.start as usize..range.end as usize];
+    record[8..8 + payload.len()].copy_from_slice(payload);
+    seal(record, header.content_id);
+    file
+}
+
+/// What a bundle shows of the corners of a file.
+fn of_corner<T>(file: &[u8], show: impl Fn(&Bundle<'_>) -> T) -> T {
+    let (mut decoder, mut rest) = (Decoder::new(Limits::default()), file);
     while let Step::Consumed(used, event) = decoder.push(rest).unwrap() {
         rest = &rest[used..];
         if let Event::Corners(bundle) = event {
-            return bundle.vectors(0)[0][0][0];
+            return show(&bundle);
         }
     }
     panic!("no corners")
+}
+
+/// The x of red of the first hemisphere of a file of one vertex, `vectors-f32`, as read with a scale exponent.
+fn scaled(number: f32, scale_exponent: i16) -> f32 {
+    let lattice = Lattice::new([1, 1, 1], [0.0; 3], [0.0; 3]).unwrap();
+    let vectors = [[[[0.0; 3]; 3]; 6]];
+    let options = EncodeOptions { encoding: Encoding::VectorsF32, ..EncodeOptions::new() };
+    let file = encode(&GridSource::new(lattice, &vectors), &options).unwrap();
+    of_corner(&with_corner(&file, scale_exponent, &number.to_le_bytes()), |bundle| bundle.vectors(0)[0][0][0])
 }
 
 #[test]
