@@ -8,8 +8,8 @@ impl IrradianceGrid {
     /// Takes over what an event brings: the values of a bundle or of the corners, or a block of validity and blocked
     /// edges. Other events bring nothing; a header is only compared.
     ///
-    /// Events may come in any order, as records fetched one by one do. A record that comes again replaces the first:
-    /// who mixes generations of a record accepts the newest last.
+    /// Events may come in any order, as records fetched one by one do. A record that comes again with a higher generation
+    /// replaces what it brought before, one with a lower is ignored (`spec/ivg.md`, "Updates").
     ///
     /// # Errors
     ///
@@ -20,16 +20,19 @@ impl IrradianceGrid {
             Event::Header(header) => self.check_lattice(header),
             Event::Corners(bundle) | Event::Bundle(bundle) => {
                 self.check_lattice(bundle.header())?;
-                for (vertex, values) in bundle.iter() {
-                    self.set(address(vertex), values);
+                if !self.is_stale(bundle.header().content_id, bundle.id(), bundle.generation()) {
+                    for (vertex, values) in bundle.iter() {
+                        self.set(address(vertex), values);
+                    }
                 }
                 Ok(())
             }
             Event::Validity(block) => {
-                let first = address(block.first_vertex());
-                if first.saturating_add(block.len()) > self.vertex_count() {
-                    return Err(GridError::OtherLattice);
+                self.check_lattice(block.header())?;
+                if self.is_stale(block.header().content_id, block.id(), block.generation()) {
+                    return Ok(());
                 }
+                let first = address(block.first_vertex());
                 for (n, &validity) in block.validity().iter().enumerate() {
                     self.set_validity(first + n, validity);
                     self.set_blocked_edges(first + n, block.blocked_edges(n));
@@ -43,7 +46,8 @@ impl IrradianceGrid {
     /// The grid in a whole file, and the file's header.
     ///
     /// Allocates 219 bytes a vertex, 111 for radiance harmonics, and that only once the file is seen to be as long as its
-    /// header says: at most six times the length of `bytes`.
+    /// header says: at most six times the length of `bytes`, or 160 times where the order `explicit` leaves out vertices
+    /// that light does not reach.
     ///
     /// # Errors
     ///
@@ -59,7 +63,7 @@ impl IrradianceGrid {
                     whole = {
                         let grid =
                             Self::with_limit(header.lattice, header.encoding.quantity(), limits.vertices);
-                        Some(grid.map(|grid| (grid, *header)))
+                        Some(grid.map(|grid| (grid, header.clone())))
                     };
                 }
             }

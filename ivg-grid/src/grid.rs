@@ -1,6 +1,9 @@
 //! The dense grid in memory: what is known about every vertex of a lattice.
 
-use ivg_format::{HemisphereVectors, Lattice, Quantity, RadianceHarmonics, Values, VertexValues};
+use ivg_format::{
+    Arrival, ContentId, Generations, HemisphereVectors, Lattice, Quantity, RadianceHarmonics, RecordId,
+    Values, VertexValues,
+};
 
 use crate::{GridError, GridValues};
 
@@ -32,6 +35,18 @@ pub struct IrradianceGrid {
     invalid_count: usize,
     blocked_count: usize,
     filled: bool,
+    accepted: Accepted,
+}
+
+/// Which generation of each record of a file has been accepted. It says what to do with the next record, not what the
+/// grid holds: grids are equal whatever it is.
+#[derive(Clone, Debug, Default)]
+struct Accepted(Generations);
+
+impl PartialEq for Accepted {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl IrradianceGrid {
@@ -73,6 +88,7 @@ impl IrradianceGrid {
             invalid_count: 0,
             blocked_count: 0,
             filled: false,
+            accepted: Accepted::default(),
         })
     }
 
@@ -108,6 +124,7 @@ impl IrradianceGrid {
             invalid_count,
             blocked_count,
             filled: false,
+            accepted: Accepted::default(),
         })
     }
 
@@ -300,7 +317,13 @@ impl IrradianceGrid {
             invalid_count: self.invalid_count,
             blocked_count: self.blocked_count,
             filled: true,
+            accepted: self.accepted.clone(),
         }
+    }
+
+    /// Whether a record is older than the one of the same id that was accepted before; if not, it is accepted from now on.
+    pub(crate) fn is_stale(&mut self, file: ContentId, id: RecordId, generation: u32) -> bool {
+        self.accepted.0.admit(file, id, generation) == Arrival::Stale
     }
 }
 
