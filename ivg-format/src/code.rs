@@ -45,8 +45,8 @@ pub mod codes {
         ORDER_UNKNOWN = 404, Unsupported, "IVG-ORD-06", "this order of vertices needs another reader";
         /// Units that this reader does not know.
         UNITS_UNKNOWN = 405, Unsupported, "IVG-HDR-05", "these units need a newer reader";
-        /// A direction code with a forbidden half.
-        DIRECTION_CODE = 406, Invalid, "IVG-DIR-02", "a direction code holds the forbidden value 4095";
+        /// A direction code with a forbidden half or byte.
+        DIRECTION_CODE = 406, Invalid, "IVG-DIR-02", "a direction code has a forbidden value";
         /// A stored number that is NaN or infinite, or becomes so when scaled.
         NOT_FINITE = 407, Invalid, "IVG-VEC-02", "an irradiance vector is not finite";
         /// Unused bits after the blocked edges are not zero.
@@ -59,6 +59,10 @@ pub mod codes {
         METADATA = 411, Invalid, "IVG-META-02", "the metadata are not lines of key=value in UTF-8";
         /// The forbidden ratio code −128.
         RATIO_CODE = 412, Invalid, "IVG-SH-04", "a ratio code holds the forbidden value -128";
+        /// A colour, stored as floating-point numbers, that is negative or not finite.
+        PAIR_COLOUR = 413, Invalid, "IVG-PAIR-02", "a colour is negative or not finite";
+        /// A component of a direction, stored as a floating-point number, that is not in −1 … 1.
+        PAIR_DIRECTION = 414, Invalid, "IVG-PAIR-03", "a component of a direction is not in -1 to 1";
         /// A number in the list of a bundle's vertices is not in its shortest form, too long, or cut off.
         INDEX_NUMBER = 420, Invalid, "IVG-EXP-02",
             "a number in the list of vertices is not in its shortest form, is too long or has no end";

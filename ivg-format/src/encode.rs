@@ -2,17 +2,15 @@
 
 mod lists;
 
-use crate::codec::harmonics::RATIOS;
+use crate::codec::{Fault, Prepared};
 use crate::directory::{DIRECTORY, Directory};
 use crate::encoding::{Encoding, Order, Units};
-use crate::header::{Header, RecordId, SCALE_EXPONENTS, VALIDITY_BLOCK};
+use crate::header::{Header, RecordId, VALIDITY_BLOCK};
 use crate::lattice::{Lattice, LatticeError};
 use crate::metadata::{self, BakedLight, LIGHTS, METADATA};
 use crate::order::explicit::write_list;
-use crate::quant::pack::{PackedHemisphere, pack_hemisphere};
-use crate::quant::{floor_log2, power_of_two_f64, ratio, rgb9e5};
 use crate::validity;
-use crate::values::{HemisphereVectors, Quantity, RadianceHarmonics, Values};
+use crate::values::{Quantity, Values};
 use crate::wire::{FORMAT, HEADER_BYTES};
 use alloc::vec::Vec;
 use core::fmt;
@@ -228,7 +226,8 @@ pub enum EncodeError {
 /// [`EncodeError`] names what cannot be written and where.
 pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8>, EncodeError> {
     check_source(source)?;
-    let prepared = Prepared::new(source, options.encoding, None)?;
+    let prepared = Prepared::new(source.values, options.encoding, None)
+        .map_err(|fault| named(fault, source, options.encoding))?;
     let header = Header { scale_exponent: prepared.scale_exponent(), ..unplaced(source, options)? };
     let lists = Lists::of(source, options.order, header.largest_bundle())?;
     let directory = lists.directory(options)?;
@@ -292,7 +291,8 @@ pub fn encode_record(
         return Ok(out);
     }
     let lists = Lists::of(source, header.order, header.largest_bundle())?;
-    let prepared = Prepared::new(source, header.encoding, Some(header.scale_exponent))?;
+    let prepared = Prepared::new(source.values, header.encoding, Some(header.scale_exponent))
+        .map_err(|fault| named(fault, source, header.encoding))?;
     let mut payload = Vec::new();
     if header.order == Order::Explicit && lists.len() != header.bundle_count as usize {
         return Err(EncodeError::OtherFile { what: "bundles" });
@@ -459,173 +459,21 @@ fn layout(
     Ok(header)
 }
 
-/// The values of all vertices on their way to bytes.
-enum Prepared<'a> {
-    /// Directions and colours.
-    Packed { hemispheres: Vec<[PackedHemisphere; 6]>, scale_exponent: i16 },
-    /// Numbers as they are.
-    Plain(&'a [HemisphereVectors]),
-    /// Means, and codes of the ratios to them.
-    Harmonics { vertices: Vec<([f64; 3], [i8; RATIOS])>, scale_exponent: i16 },
-}
-
-impl<'a> Prepared<'a> {
-    /// At the scale exponent `fixed`, or at the smallest that holds the values.
-    fn new(source: &GridSource<'a>, encoding: Encoding, fixed: Option<i16>) -> Result<Self, EncodeError> {
-        match (encoding, source.values) {
-            (Encoding::PackedOct24, Values::Vectors(vectors)) => pack(&source.lattice, vectors, fixed),
-            (Encoding::VectorsF32, Values::Vectors(vectors)) => {
-                for (index, vertex) in (0..).zip(vectors) {
-                    if let Some(h) = vertex.iter().position(|v| !v.iter().flatten().all(|c| c.is_finite())) {
-                        return Err(EncodeError::NotFinite {
-                            vertex: source.lattice.coords(index),
-                            hemisphere: h as u8,
-                        });
-                    }
-                }
-                match fixed {
-                    Some(file) if file != 0 => Err(EncodeError::ScaleExponent { file, needed: 0 }),
-                    _ => Ok(Self::Plain(vectors)),
-                }
-            }
-            (Encoding::Sh2, Values::Radiance(radiance)) => relate(&source.lattice, radiance, fixed),
-            (encoding, values) => Err(EncodeError::Quantity { encoding, found: values.quantity() }),
+/// The encoding's complaint as the caller's: with the vertex' coordinates.
+fn named(fault: Fault, source: &GridSource<'_>, encoding: Encoding) -> EncodeError {
+    let at = |index| source.lattice.coords(index as u64);
+    match fault {
+        Fault::Quantity => EncodeError::Quantity { encoding, found: source.values.quantity() },
+        Fault::NotFinite(index, hemisphere) => {
+            EncodeError::NotFinite { vertex: at(index), hemisphere: hemisphere as u8 }
         }
-    }
-
-    fn scale_exponent(&self) -> i16 {
-        match self {
-            Self::Packed { scale_exponent, .. } | Self::Harmonics { scale_exponent, .. } => *scale_exponent,
-            Self::Plain(_) => 0,
+        Fault::TooLarge(index, hemisphere) => {
+            EncodeError::TooLarge { vertex: at(index), hemisphere: hemisphere as u8 }
         }
+        Fault::RadianceNotFinite(index) => EncodeError::RadianceNotFinite { vertex: at(index) },
+        Fault::RadianceTooLarge(index) => EncodeError::RadianceTooLarge { vertex: at(index) },
+        Fault::ScaleExponent { file, needed } => EncodeError::ScaleExponent { file, needed },
     }
-
-    /// Appends the payload of some vertices.
-    fn write(&self, out: &mut Vec<u8>, vertices: impl Iterator<Item = u64> + Clone) {
-        let scale = power_of_two_f64(-i32::from(self.scale_exponent()));
-        match self {
-            Self::Packed { hemispheres, .. } => {
-                for h in vertices.clone().flat_map(|v| &hemispheres[v as usize]) {
-                    out.extend_from_slice(&rgb9e5::encode_f64(h.colour.map(|c| c * scale)).to_le_bytes());
-                }
-                for h in vertices.flat_map(|v| &hemispheres[v as usize]) {
-                    out.extend_from_slice(&h.direction.to_le_bytes()[..3]);
-                }
-            }
-            Self::Plain(vectors) => {
-                for component in vertices.flat_map(|v| vectors[v as usize].iter().flatten().flatten()) {
-                    out.extend_from_slice(&component.to_le_bytes());
-                }
-            }
-            Self::Harmonics { vertices: all, .. } => {
-                for (mean, _) in vertices.clone().map(|v| &all[v as usize]) {
-                    out.extend_from_slice(&rgb9e5::encode_f64(mean.map(|c| c * scale)).to_le_bytes());
-                }
-                for code in vertices.flat_map(|v| &all[v as usize].1) {
-                    out.push(code.cast_unsigned());
-                }
-            }
-        }
-    }
-}
-
-/// The largest colour component that RGB9E5 holds with any scale exponent.
-fn largest_colour() -> f64 {
-    f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(*SCALE_EXPONENTS.end()))
-}
-
-fn pack<'a>(
-    lattice: &Lattice,
-    vectors: &[HemisphereVectors],
-    fixed: Option<i16>,
-) -> Result<Prepared<'a>, EncodeError> {
-    let mut hemispheres = Vec::with_capacity(vectors.len());
-    let mut largest = 0.0f64;
-    for (index, vectors) in (0..).zip(vectors) {
-        let mut vertex = [PackedHemisphere { direction: 0, colour: [0.0; 3] }; 6];
-        for (hemisphere, (packed, vectors)) in vertex.iter_mut().zip(vectors).enumerate() {
-            let at = || (lattice.coords(index), hemisphere as u8);
-            let Some(found) = pack_hemisphere(vectors, hemisphere) else {
-                let (vertex, hemisphere) = at();
-                return Err(EncodeError::NotFinite { vertex, hemisphere });
-            };
-            let most = found.colour.iter().fold(0.0, |most: f64, &c| most.max(c));
-            if most > largest_colour() {
-                let (vertex, hemisphere) = at();
-                return Err(EncodeError::TooLarge { vertex, hemisphere });
-            }
-            largest = largest.max(most);
-            *packed = found;
-        }
-        hemispheres.push(vertex);
-    }
-    Ok(Prepared::Packed { hemispheres, scale_exponent: settle(largest, fixed)? })
-}
-
-/// Means and codes of the ratios to them (IVG-SH-06).
-fn relate<'a>(
-    lattice: &Lattice,
-    radiance: &[RadianceHarmonics],
-    fixed: Option<i16>,
-) -> Result<Prepared<'a>, EncodeError> {
-    let mut vertices = Vec::with_capacity(radiance.len());
-    let mut largest = 0.0f64;
-    for (index, channels) in (0..).zip(radiance) {
-        let vertex = || lattice.coords(index);
-        if !channels.iter().flatten().all(|c| c.is_finite()) {
-            return Err(EncodeError::RadianceNotFinite { vertex: vertex() });
-        }
-        let mean = channels.map(|coefficients| f64::from(coefficients[0]).max(0.0));
-        let most = mean.iter().fold(0.0, |most: f64, &c| most.max(c));
-        if most > largest_colour() {
-            return Err(EncodeError::RadianceTooLarge { vertex: vertex() });
-        }
-        largest = largest.max(most);
-        vertices.push((mean, channels));
-    }
-    // The ratios are taken to the means as they will be decoded, so that their rounding is not passed on.
-    let scale_exponent = settle(largest, fixed)?;
-    let scale = power_of_two_f64(-i32::from(scale_exponent));
-    let vertices = vertices.into_iter().map(|(mean, channels)| {
-        let decoded = rgb9e5::decode_scaled(rgb9e5::encode_f64(mean.map(|c| c * scale)), scale_exponent);
-        let mut codes = [0; RATIOS];
-        let coefficients = channels.iter().zip(decoded).flat_map(|(coefficients, mean)| {
-            coefficients[1..].iter().zip(1..).map(move |(&c, which)| (c, which, mean))
-        });
-        for (code, (coefficient, which, mean)) in codes.iter_mut().zip(coefficients) {
-            if mean > 0.0 {
-                *code = ratio::encode(f64::from(coefficient) / f64::from(mean), which);
-            }
-        }
-        (mean, codes)
-    });
-    Ok(Prepared::Harmonics { vertices: vertices.collect(), scale_exponent })
-}
-
-/// The scale exponent of a file that has one already, if it holds `largest`; otherwise the smallest that does.
-fn settle(largest: f64, fixed: Option<i16>) -> Result<i16, EncodeError> {
-    let needed = scale_exponent(largest);
-    match fixed {
-        Some(file) if largest > f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(file)) => {
-            Err(EncodeError::ScaleExponent { file, needed })
-        }
-        Some(file) => Ok(file),
-        None => Ok(needed),
-    }
-}
-
-/// The smallest exponent e in range with `largest / 2^e` ≤ 65408; 0 for a grid without light (IVG-PACK-06).
-fn scale_exponent(largest: f64) -> i16 {
-    if largest <= 0.0 {
-        return 0;
-    }
-    let (low, high) = (i32::from(*SCALE_EXPONENTS.start()), i32::from(*SCALE_EXPONENTS.end()));
-    // 65408 is a little below 2^16, so the exponent is this one or the next.
-    let mut exponent = (floor_log2(largest) - 15).clamp(low, high);
-    if largest > f64::from(rgb9e5::LARGEST) * power_of_two_f64(exponent) {
-        exponent += 1;
-    }
-    exponent.min(high) as i16
 }
 
 impl fmt::Display for EncodeError {

@@ -9,6 +9,14 @@ pub enum Encoding {
     /// A direction of 24 bits in the octahedral map and a colour in RGB9E5 for each hemisphere: 42 bytes.
     #[default]
     PackedOct24,
+    /// As Web3D 2008 has it: a direction of 8 bits a coordinate and a colour in RGB9E5 for each hemisphere: 42 bytes.
+    PackedXyz24,
+    /// Direction and colour of each hemisphere in binary16: 72 bytes.
+    PairF16,
+    /// As [`Encoding::PairF16`], each padded to four numbers, as textures want them: 96 bytes.
+    PairF16x4,
+    /// Direction and colour of each hemisphere in binary32: 144 bytes.
+    PairF32,
     /// 54 binary32 numbers `[hemisphere 6][rgb 3][xyz 3]`: 216 bytes, exact.
     VectorsF32,
     /// Spherical harmonics of the radiance to degree 2: RGB9E5 for the mean, 8 bits for the ratio of each other
@@ -18,13 +26,25 @@ pub enum Encoding {
 
 impl Encoding {
     /// Every encoding that this crate has, in the order of their ids.
-    pub const ALL: &'static [Self] = &[Self::PackedOct24, Self::VectorsF32, Self::Sh2];
+    pub const ALL: &'static [Self] = &[
+        Self::PackedOct24,
+        Self::PackedXyz24,
+        Self::PairF16,
+        Self::PairF16x4,
+        Self::PairF32,
+        Self::VectorsF32,
+        Self::Sh2,
+    ];
 
     /// The number in the registry, as stored in the header.
     #[must_use]
     pub const fn id(self) -> u16 {
         match self {
             Self::PackedOct24 => 1,
+            Self::PackedXyz24 => 2,
+            Self::PairF16 => 3,
+            Self::PairF16x4 => 4,
+            Self::PairF32 => 5,
             Self::VectorsF32 => 6,
             Self::Sh2 => 7,
         }
@@ -41,6 +61,10 @@ impl Encoding {
     pub const fn name(self) -> &'static str {
         match self {
             Self::PackedOct24 => "packed-oct24",
+            Self::PackedXyz24 => "packed-xyz24",
+            Self::PairF16 => "pair-f16",
+            Self::PairF16x4 => "pair-f16x4",
+            Self::PairF32 => "pair-f32",
             Self::VectorsF32 => "vectors-f32",
             Self::Sh2 => "sh2-28",
         }
@@ -56,7 +80,10 @@ impl Encoding {
     #[must_use]
     pub const fn bytes_per_vertex(self) -> u64 {
         match self {
-            Self::PackedOct24 => 42,
+            Self::PackedOct24 | Self::PackedXyz24 => 42,
+            Self::PairF16 => 72,
+            Self::PairF16x4 => 96,
+            Self::PairF32 => 144,
             Self::VectorsF32 => 216,
             Self::Sh2 => 28,
         }
@@ -66,8 +93,8 @@ impl Encoding {
     #[must_use]
     pub const fn quantity(self) -> Quantity {
         match self {
-            Self::PackedOct24 | Self::VectorsF32 => Quantity::Vectors,
             Self::Sh2 => Quantity::Radiance,
+            _ => Quantity::Vectors,
         }
     }
 }

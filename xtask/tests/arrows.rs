@@ -22,7 +22,7 @@ const FOREIGN: [(&str, &str, &[&str]); 4] = [
 /// people's programs.
 const FEW_DEPENDENCIES: [(&str, &[&str]); 3] = [
     ("ivg-wire", &["crc32fast", "zerocopy"]),
-    ("ivg-format", &["libm", "zerocopy"]),
+    ("ivg-format", &["half", "libm", "zerocopy"]),
     ("pmesh-format", &["zerocopy"]),
 ];
 

@@ -1,9 +1,11 @@
 //! What must hold of writer and reader of `.ivg` together, for any grid.
 
 use crate::choices::Choices;
-use ivg_format::quant::direction::decode_octahedral24;
-use ivg_format::quant::pack::pack_hemisphere;
+use ivg_format::quant::direction::Octahedral24;
+use ivg_format::quant::pack::{DirectionQuantiser, pack_hemisphere};
+use ivg_format::quant::pair::{HalfDirection, SingleDirection};
 use ivg_format::quant::ratio::decode as decode_ratio;
+use ivg_format::quant::xyz::Xyz24;
 use ivg_format::{
     BakedLight, EncodeError, EncodeOptions, Encoding, Event, GridSource, HemisphereVectors, Lattice, Limits,
     Quantity, RadianceHarmonics, Units, Values, VertexValues, decode_all, encode, lights, metadata,
@@ -168,7 +170,7 @@ impl Grid {
                             assert_eq!(bits(&found), bits(&all[vertex]));
                         }
                         (VertexValues::Vectors(found), Some(packed), GridValues::Vectors(all)) => {
-                            compare_packed(&all[vertex], &packed, &found, exponent);
+                            compare_packed(&all[vertex], &packed, &found, options.encoding, exponent);
                         }
                         (VertexValues::Radiance(found), None, GridValues::Radiance(all)) => {
                             compare_harmonics(&all[vertex], &found, exponent);
@@ -191,21 +193,20 @@ fn bits(vectors: &HemisphereVectors) -> Vec<u32> {
     vectors.iter().flatten().flatten().map(|component| component.to_bits()).collect()
 }
 
-/// Directions are those that packing chooses; colours are those that packing chooses within the rounding of RGB9E5. The mantissa
-/// of the largest component is at least 255.5 steps (it may have been rounded up to 256), so that half a step is at most 1/511 of
-/// that component, or 2^-25 before scaling where the exponent can get no smaller.
+/// Directions are those that packing chooses; colours are those that packing chooses within the rounding of what stores them.
 fn compare_packed(
     original: &HemisphereVectors,
     packed: &[([f32; 3], [f32; 3]); 6],
     vectors: &HemisphereVectors,
+    encoding: Encoding,
     scale_exponent: i16,
 ) {
     for (hemisphere, ((direction, colour), vectors)) in packed.iter().zip(vectors).enumerate() {
-        let expected = pack_hemisphere(&original[hemisphere], hemisphere).expect("finite");
-        assert_eq!(Some(*direction), decode_octahedral24(expected.direction));
-        let largest = expected.colour.iter().copied().fold(0.0, f64::max);
-        let half_step = (largest / 511.0).max(f64::from(scale_exponent - 25).exp2());
-        for (channel, (&colour, expected)) in colour.iter().zip(expected.colour).enumerate() {
+        let (expected_direction, expected) = expected(&original[hemisphere], hemisphere, encoding);
+        assert_eq!(*direction, expected_direction);
+        let largest = expected.iter().copied().fold(0.0, f64::max);
+        for (channel, (&colour, expected)) in colour.iter().zip(expected).enumerate() {
+            let half_step = half_step(encoding, expected, largest, scale_exponent);
             let error = (f64::from(colour) - expected).abs();
             assert!(
                 error <= half_step,
@@ -213,6 +214,35 @@ fn compare_packed(
             );
             assert_eq!(vectors[channel], direction.map(|d| colour * d));
         }
+    }
+}
+
+/// Direction and colour of a hemisphere by the rules for packing.
+fn expected(vectors: &[[f32; 3]; 3], hemisphere: usize, encoding: Encoding) -> ([f32; 3], [f64; 3]) {
+    fn by<Q: DirectionQuantiser>(vectors: &[[f32; 3]; 3], hemisphere: usize) -> ([f32; 3], [f64; 3]) {
+        let packed = pack_hemisphere::<Q>(vectors, hemisphere).expect("finite");
+        (Q::decode(&packed.direction), packed.colour)
+    }
+    match encoding {
+        Encoding::PackedOct24 => by::<Octahedral24>(vectors, hemisphere),
+        Encoding::PackedXyz24 => by::<Xyz24>(vectors, hemisphere),
+        Encoding::PairF16 | Encoding::PairF16x4 => by::<HalfDirection>(vectors, hemisphere),
+        Encoding::PairF32 => by::<SingleDirection>(vectors, hemisphere),
+        other => panic!("{} holds no directions and colours", other.name()),
+    }
+}
+
+/// How much a component of a colour may be off, the largest of its colour given. RGB9E5: the mantissa of the largest is at least
+/// 255.5 steps (it may have been rounded up to 256), so that half a step is at most 1/511 of it, or 2^-25 before scaling where
+/// the exponent can get no smaller. binary16: half of 2^-10 of its power of two, or 2^-25 before scaling; and as much again as
+/// the rounding to binary32 before it, which is that of binary32 too: half of 2^-23, or half of its smallest number.
+fn half_step(encoding: Encoding, component: f64, largest: f64, scale_exponent: i16) -> f64 {
+    let absolute = f64::from(scale_exponent - 25).exp2();
+    let single = component * 2.0f64.powi(-24) + 2.0f64.powi(-150);
+    match encoding {
+        Encoding::PackedOct24 | Encoding::PackedXyz24 => (largest / 511.0).max(absolute),
+        Encoding::PairF16 | Encoding::PairF16x4 => (component / 2048.0).max(absolute) + single,
+        _ => single,
     }
 }
 

@@ -6,6 +6,13 @@
 //! pinned bit by bit (IVG-DIR-03): fold in integers, then the binary32 number nearest to the exact quotient.
 //! Encoding finds the nearest code; the angle to it is at most √2/2047 rad, 0.0396°.
 
+use super::pack::DirectionQuantiser;
+use super::{DirectionCode, normalised, unit};
+
+/// The quantiser: for [`super::pack::pack_hemisphere`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Octahedral24;
+
 /// Largest magnitude of a coordinate.
 const SCALE: i32 = 2047;
 
@@ -68,12 +75,6 @@ const fn lowest_code(u: i32, v: i32) -> u32 {
     (low_u + SCALE) as u32 | ((low_v + SCALE) as u32) << 12
 }
 
-/// The vector divided by its largest magnitude, so that no square can overflow or vanish.
-fn normalised(vector: [f64; 3]) -> Option<[f64; 3]> {
-    let largest = vector.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-    (vector.iter().all(|c| c.is_finite()) && largest > 0.0).then(|| vector.map(|c| c / largest))
-}
-
 /// The point of the octahedron |x| + |y| + |z| = 2047 at map coordinates (u, v).
 const fn fold(u: i32, v: i32) -> [i32; 3] {
     let z = SCALE - u.abs() - v.abs();
@@ -99,13 +100,46 @@ pub fn decode_octahedral24(code: u32) -> Option<[f32; 3]> {
 
 /// Decodes a code that [`is_valid`]. For any other, the result is some direction.
 pub(crate) fn decode_valid(code: u32) -> [f32; 3] {
-    let half = |bits: u32| (bits & 0xFFF) as i32 - SCALE;
-    let point = fold(half(code), half(code >> 12));
-    let squared: i32 = point.iter().map(|c| c * c).sum();
-    // Root and quotient are each rounded to binary64, the result once more: checked over all codes to be the
-    // nearest binary32 number to the exact quotient.
-    let length = libm::sqrt(f64::from(squared));
-    point.map(|c| (f64::from(c) / length) as f32)
+    unit::direction(point(code))
+}
+
+/// The point of the octahedron that a code names, as [`fold`] finds it, but without branches.
+#[inline(always)]
+fn point(code: u32) -> [f32; 3] {
+    let half = |bits: u32| ((bits & 0xFFF) as i32 - SCALE) as f32;
+    let (u, v) = (half(code), half(code >> 12));
+    let z = SCALE as f32 - u.abs() - v.abs();
+    // Below the equator |u| and |v| both lose what z lacks.
+    let lack = (-z).max(0.0);
+    [u - lack.copysign(u), v - lack.copysign(v), z]
+}
+
+impl DirectionCode for Octahedral24 {
+    /// −z.
+    const ALLOWED: u32 = 0;
+
+    #[inline(always)]
+    fn fault(code: u32) -> u32 {
+        // Only 4095 carries into the thirteenth bit.
+        ((code & 0xFFF) + 1 | (code >> 12) + 1) & 0x1000
+    }
+
+    #[inline(always)]
+    fn directions<const N: usize>(codes: &[u32; N], out: &mut [[f32; N]; 3]) {
+        unit::directions(codes, point, out);
+    }
+}
+
+impl DirectionQuantiser for Octahedral24 {
+    type Code = u32;
+
+    fn encode(vector: [f64; 3], axis: usize, positive: bool) -> Option<u32> {
+        encode_octahedral24_in_hemisphere(vector, axis, positive)
+    }
+
+    fn decode(code: &u32) -> [f32; 3] {
+        decode_valid(*code)
+    }
 }
 
 #[cfg(test)]

@@ -19,13 +19,51 @@ pub fn decode(code: i8, which: usize) -> f32 {
     f32::from(code) * step(which, code < 0)
 }
 
+/// The ratios of coefficients 1 to 8 of a channel.
+#[inline(always)]
+pub(crate) fn decode_all(codes: &[u8; 8]) -> [f32; 8] {
+    let above = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| step(which, false));
+    let below = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| step(which, true));
+    core::array::from_fn(|n| {
+        let code = codes[n].cast_signed();
+        f32::from(code) * if code < 0 { below[n] } else { above[n] }
+    })
+}
+
 /// The code nearest to `ratio` for coefficient `which` (1 to 8), halves away from zero; a ratio beyond the bounds
 /// becomes the bound, one that is not a number 0.
 #[must_use]
 pub fn encode(ratio: f64, which: usize) -> i8 {
-    let steps = libm::round(ratio / f64::from(step(which, ratio < 0.0)));
-    // `as` takes NaN to 0 and everything beyond to the ends.
-    steps.clamp(-127.0, 127.0) as i8
+    nearest(ratio, f64::from(step(which, ratio < 0.0)))
+}
+
+/// The codes of coefficients 1 to 8 of a channel, finite numbers, for the coefficient 0 that a reader will have: 0 where
+/// that is 0 (IVG-SH-06).
+#[inline(always)]
+pub(crate) fn encode_all(coefficients: &[f32; 8], mean: f32) -> [u8; 8] {
+    let above = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| step(which, false));
+    let below = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| step(which, true));
+    // What is divided by infinity is 0, so that a mean of 0 gives codes of 0.
+    let mean = if mean > 0.0 { f64::from(mean) } else { f64::INFINITY };
+    core::array::from_fn(|n| {
+        let step = if coefficients[n] < 0.0 { below[n] } else { above[n] };
+        // The product has at most 9 + 24 bits and is exact, so that only the quotient is rounded.
+        nearest(f64::from(coefficients[n]), mean * f64::from(step)).cast_unsigned()
+    })
+}
+
+/// The whole number nearest to a quotient, halves away from zero, within −127 … 127; 0 for what is not a number.
+#[inline(always)]
+fn nearest(value: f64, unit: f64) -> i8 {
+    /// Sums with 2^52 have no digits behind the point.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    let quotient = value / unit;
+    let magnitude = if quotient.is_nan() { 0.0 } else { quotient.abs().min(127.0) };
+    let even = magnitude + WHOLE;
+    // Halves went to the even neighbour; where that was the lower one, up.
+    let up = i32::from(magnitude - (even - WHOLE) >= 0.5);
+    let whole = even.to_bits() as i32 + up;
+    (if quotient < 0.0 { -whole } else { whole }) as i8
 }
 
 fn step(which: usize, negative: bool) -> f32 {

@@ -55,5 +55,19 @@ pub(crate) fn decode_scaled(code: u32, scale_exponent: i16) -> [f32; 3] {
     [code, code >> 9, code >> 18].map(|bits| (bits & 0x1FF) as f32 * step)
 }
 
+/// Decodes colours times 2^`scale_exponent`, one array for each component; exact (IVG-RGB-02).
+#[inline(always)]
+pub(crate) fn decode_all<const N: usize>(codes: &[u32; N], scale_exponent: i16, out: &mut [[f32; N]; 3]) {
+    let scale = power_of_two(i32::from(scale_exponent));
+    let [red, green, blue] = out;
+    for n in 0..N {
+        let code = codes[n];
+        // From 2^-24 to 2^7; times the scale it may be subnormal, and is exact all the same.
+        let step = f32::from_bits((code >> 27) + (127 - EXPONENT_OFFSET as u32) << 23) * scale;
+        let component = |bits: u32| (bits & 0x1FF).cast_signed() as f32 * step;
+        (red[n], green[n], blue[n]) = (component(code), component(code >> 9), component(code >> 18));
+    }
+}
+
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,7 @@
 //! The laws of the .ivg format, on small files built here.
 
 mod damage;
+mod encodings;
 mod explicit;
 mod fields;
 mod files;

@@ -1,28 +1,8 @@
 use super::*;
+use crate::quant::unit::tests::is_nearest;
 use quickcheck::{TestResult, quickcheck};
 
 const AXES: [[i32; 3]; 6] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
-
-/// Compares x / sqrt(squared) with `value` exactly: whether no other binary32 number is nearer.
-fn is_nearest(x: i32, squared: i32, value: f32) -> bool {
-    if x == 0 {
-        return value.to_bits() == 0;
-    }
-    if (x < 0) != (value < 0.0) {
-        return false;
-    }
-    // value = m × 2^e with 2^23 ≤ m < 2^24; its neighbours' midpoints are (2m ± 1) × 2^(e - 1). The quotient lies
-    // between them if its square does: x² 2^(2 - 2e) between (2m ± 1)² × squared. At most 10 + 2 × 35 + 22 and
-    // 50 + 23 bits: they fit. (At m = 2^23 the lower midpoint is nearer; the bound below is then the laxer one,
-    // so that case is compared with (4m - 1) / 2 instead.)
-    let bits = value.abs().to_bits();
-    let (e, m) = ((bits >> 23) as i32 - 150, u128::from(bits & 0x7F_FFFF | 0x80_0000));
-    let quotient = u128::from(x.unsigned_abs()).pow(2) << (4 - 2 * e);
-    let squared = squared as u128;
-    let above = (4 * m + 2).pow(2) * squared;
-    let below = if m == 0x80_0000 { 4 * m - 1 } else { 4 * m - 2 }.pow(2) * squared;
-    below < quotient && quotient < above
-}
 
 #[test]
 fn every_code_decodes_to_the_nearest_number_or_is_forbidden() {
@@ -47,12 +27,17 @@ fn every_code_decodes_to_the_nearest_number_or_is_forbidden() {
 }
 
 #[test]
-fn a_number_that_is_one_unit_off_is_not_the_nearest() {
-    let [x, _, _] = decode_octahedral24(0x80_0C00).unwrap();
-    let (u, v) = (0xC00 - 2047, 0x800 - 2047);
-    let squared = u * u + v * v + (2047 - u - v) * (2047 - u - v);
-    assert!(is_nearest(u, squared, x));
-    assert!(!is_nearest(u, squared, x.next_up()) && !is_nearest(u, squared, x.next_down()));
+fn many_codes_at_once_give_what_each_gives_alone() {
+    for first in (0..1u32 << 24).step_by(64) {
+        let codes: [u32; 64] = core::array::from_fn(|n| first + n as u32);
+        let mut directions = [[0.0; 64]; 3];
+        Octahedral24::directions(&codes, &mut directions);
+        for (n, code) in codes.into_iter().enumerate().filter(|&(_, code)| is_valid(code)) {
+            let one = decode_valid(code).map(f32::to_bits);
+            assert_eq!(directions.map(|c| c[n].to_bits()), one, "{code:#08x}");
+        }
+        assert!(codes.iter().all(|&code| (Octahedral24::fault(code) == 0) == is_valid(code)));
+    }
 }
 
 #[test]
