@@ -10,6 +10,7 @@ use ivg_wire::splitmix64;
 use std::ops::Range;
 
 mod refused;
+mod variants;
 
 /// Places of fields in the header (`spec/tables/ivg.toml`).
 mod at {
@@ -37,10 +38,14 @@ mod at {
 const RECORD_HEAD: usize = 8;
 const CHUNK_HEAD: usize = 16;
 
-pub(super) const PREFIX_VECTOR: &str = "0005-validity";
+const VALIDITY: &str = "0005-validity";
+
+/// Those that have a prefix table.
+pub(super) const PREFIX_VECTORS: [&str; 2] = [VALIDITY, variants::EXPLICIT_SMALL];
 
 pub(super) fn vectors() -> Vec<Vector> {
     let mut vectors = accepted();
+    vectors.extend(variants::accepted());
     let refused = refused::refused(&vectors);
     vectors.extend(refused);
     vectors
@@ -90,7 +95,7 @@ fn accepted() -> Vec<Vector> {
             file([4, 3, 2], EncodeOptions { units: Units::Photometric, ..exact }),
             "vectors-f32, photometric",
         ),
-        (PREFIX_VECTOR, with_validity(packed), "a validity section with blocked edges"),
+        (VALIDITY, with_validity(packed), "a validity section with blocked edges"),
         ("0006-lights", with_lights(packed), "the chunks LITE and META"),
         ("0007-line", file([5, 1, 1], packed), "one axis only: two corners, slices of one vertex"),
         ("0008-small", small.clone(), "a grid for the files to refuse to differ from"),

@@ -22,7 +22,7 @@ pub struct PrefixRow {
 #[must_use]
 pub fn prefix_rows(vector: &Vector) -> Option<Vec<PrefixRow>> {
     let ends = match vector.format {
-        Format::Ivg if vector.name == ivg::PREFIX_VECTOR => ivg::record_ends(&vector.bytes),
+        Format::Ivg if ivg::PREFIX_VECTORS.contains(&vector.name.as_str()) => ivg::record_ends(&vector.bytes),
         Format::Pmesh if vector.name == pmesh::PREFIX_VECTOR => pmesh::record_ends(&vector.bytes),
         _ => return None,
     };

@@ -5,7 +5,7 @@ use super::super::edit::{
     overwritten, read_u64, with_chunk,
 };
 use super::super::{Format, Refused, Vector};
-use super::{CHUNK_HEAD, PREFIX_VECTOR, RECORD_HEAD, at, header, light, range};
+use super::{CHUNK_HEAD, RECORD_HEAD, VALIDITY, at, header, light, range, variants};
 use ivg_format::{EncodeOptions, GridSource, RecordId, codes as ivg, encode};
 use ivg_wire::codes as wire;
 
@@ -18,6 +18,12 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     list.extend(values(twin("0008-small"), twin("0004-vectors"), twin("0005-validity")));
     list.extend(chunks(twin("0006-lights"), twin("0009-metadata")));
     list.extend(limits(twin("0008-small"), twin("0009-metadata")));
+    list.extend(variants::refused(
+        twin(variants::HARMONICS),
+        twin(variants::OCTREE),
+        twin(variants::EXPLICIT_SMALL),
+        twin("0008-small"),
+    ));
     list.into_iter().map(|refused| Vector::refused(Format::Ivg, refused)).collect()
 }
 
@@ -244,7 +250,7 @@ fn registries(small: &[u8]) -> Vec<Refused> {
 }
 
 fn values(small: &[u8], exact: &[u8], validity: &[u8]) -> Vec<Refused> {
-    let (s, e, v) = ("0008-small", "0004-vectors", PREFIX_VECTOR);
+    let (s, e, v) = ("0008-small", "0004-vectors", VALIDITY);
     let corners = range(small, RecordId::Corners);
     // Behind the colours of eight vertices, the high 12 bits of the first direction.
     let direction = corners.start + RECORD_HEAD + 8 * 6 * 4;

@@ -1,0 +1,212 @@
+//! Vectors of the encodings and orders beside `packed-oct24`, `vectors-f32` and `slices`.
+
+use super::super::edit::{DATA_OFFSET_AT, in_envelope, in_header, with_chunk};
+use super::super::{Format, Refused, Vector};
+use super::{CHUNK_HEAD, RECORD_HEAD, at, lattice, light, range};
+use ivg_format::{
+    EncodeOptions, Encoding, GridSource, Lattice, Order, RadianceHarmonics, RecordId, codes as ivg, encode,
+};
+use ivg_wire::{codes as wire, splitmix64};
+use std::ops::Range;
+
+pub(super) const HARMONICS: &str = "0015-harmonics";
+pub(super) const OCTREE: &str = "0016-octree";
+/// Lists with numbers of two bytes.
+const EXPLICIT: &str = "0017-explicit";
+pub(super) const EXPLICIT_SMALL: &str = "0018-explicit-small";
+
+/// The chunk `DIRE` of the small file: three entries, four bytes of padding.
+const DIRECTORY: Range<usize> = at::END..at::END + 48;
+
+/// Harmonics of radiance that is never negative: a mean, and no more than half of it in every other coefficient.
+fn radiance(lattice: &Lattice, seed: u64) -> Vec<RadianceHarmonics> {
+    let number = |vertex: u64, n: u64| (splitmix64(seed, vertex * 27 + n) >> 54) as f32 / 1024.0;
+    (0..lattice.vertex_count())
+        .map(|vertex| {
+            [0, 1, 2].map(|channel: u64| {
+                let mean = number(vertex, channel * 9) + 0.25;
+                std::array::from_fn(|k| match k {
+                    0 => mean,
+                    k => mean * (number(vertex, channel * 9 + k as u64) - 0.5),
+                })
+            })
+        })
+        .collect()
+}
+
+fn harmonics() -> Vec<u8> {
+    let lattice = lattice([3, 2, 4]);
+    let options =
+        EncodeOptions { encoding: Encoding::Sh2, vertices_per_slice: 2, seed: 7, ..EncodeOptions::new() };
+    encode(&GridSource::new(lattice, &radiance(&lattice, 5)), &options).expect("a sound grid")
+}
+
+fn octree() -> Vec<u8> {
+    let lattice = lattice([5, 2, 3]);
+    let options =
+        EncodeOptions { order: Order::Octree, vertices_per_slice: 2, seed: 7, ..EncodeOptions::new() };
+    encode(&GridSource::new(lattice, &light(&lattice, 6)), &options).expect("a sound grid")
+}
+
+/// Every fourth vertex in a bundle, so that a list has numbers of one byte and of two.
+fn explicit() -> Vec<u8> {
+    let lattice = lattice([5, 6, 7]);
+    let others: Vec<u64> = (0..lattice.vertex_count()).filter(|&vertex| !lattice.is_corner(vertex)).collect();
+    let bundles: Vec<Vec<u64>> = (0..4)
+        .map(|first| others.iter().copied().filter(|vertex| vertex % 4 == 3 - first).collect())
+        .collect();
+    let options = EncodeOptions {
+        encoding: Encoding::Sh2,
+        order: Order::Explicit,
+        vertices_per_slice: 8,
+        ..EncodeOptions::new()
+    };
+    let radiance = radiance(&lattice, 8);
+    let source = GridSource { bundles: Some(&bundles), ..GridSource::new(lattice, &radiance) };
+    encode(&source, &options).expect("a sound grid")
+}
+
+/// 2 × 3 × 3 vertices, ten of them in three bundles; or nine, if the tenth lies inside geometry.
+fn explicit_small(validity: bool) -> Vec<u8> {
+    let lattice = lattice([2, 3, 3]);
+    let vectors = light(&lattice, 9);
+    let mut valid = [255; 18];
+    valid[9] = 0;
+    let third = if validity { vec![10, 11, 14, 15] } else { vec![9, 10, 11, 14, 15] };
+    let source = GridSource {
+        bundles: Some(&[vec![6, 7], vec![2, 3, 8], third]),
+        validity: validity.then_some(&valid),
+        ..GridSource::new(lattice, &vectors)
+    };
+    let options = EncodeOptions { order: Order::Explicit, vertices_per_slice: 2, ..EncodeOptions::new() };
+    encode(&source, &options).expect("a sound grid")
+}
+
+pub(super) fn accepted() -> Vec<Vector> {
+    let list = [
+        (HARMONICS, harmonics(), "sh2-28"),
+        (OCTREE, octree(), "the order octree; the last bundle is smaller"),
+        (EXPLICIT, explicit(), "the order explicit, sh2-28; numbers of two bytes in the lists"),
+        (EXPLICIT_SMALL, explicit_small(false), "the order explicit; for files to refuse to differ from"),
+        ("0019-explicit-validity", explicit_small(true), "a vertex inside geometry is in no bundle"),
+    ];
+    list.into_iter().map(|(name, bytes, why)| Vector::accepted(Format::Ivg, name, bytes, why)).collect()
+}
+
+pub(super) fn refused(harmonics: &[u8], octree: &[u8], explicit: &[u8], slices: &[u8]) -> Vec<Refused> {
+    let corners = range(harmonics, RecordId::Corners);
+    // Behind the means of eight corners.
+    let ratio = in_envelope(harmonics, corners.clone(), corners.start + RECORD_HEAD + 8 * 4 + 5, &[0x80]);
+    let mut list = vec![
+        (HARMONICS, "ratio", ivg::RATIO_CODE, ratio, "a ratio with the forbidden code -128"),
+        (
+            OCTREE,
+            "octree-bundles",
+            ivg::BUNDLE_COUNT,
+            in_header(octree, at::BUNDLE_COUNT, &[4]),
+            "more bundles than the lattice has vertices for",
+        ),
+        (
+            "0008-small",
+            "directory-other-order",
+            ivg::DIRECTORY_FORBIDDEN,
+            with_chunk(slices, b"DIRE", true, &[0; 8]),
+            "a directory in a file of the order slices",
+        ),
+    ];
+    list.extend(directories(explicit));
+    list.extend(lists(explicit));
+    list
+}
+
+fn directories(file: &[u8]) -> Vec<Refused> {
+    let entry = |n: usize, vertices: u32, index_bytes: u32| {
+        let bytes = [vertices.to_le_bytes(), index_bytes.to_le_bytes()].concat();
+        in_envelope(file, DIRECTORY, DIRECTORY.start + CHUNK_HEAD + 8 * n, &bytes)
+    };
+    let header = |field: usize, bytes: &[u8]| in_header(file, field, bytes);
+    let list = [
+        (
+            "directory-type",
+            ivg::DIRECTORY_ABSENT,
+            in_envelope(file, DIRECTORY, DIRECTORY.start, b"DIRX"),
+            "the first chunk is of another type",
+        ),
+        (
+            "directory-none",
+            ivg::DIRECTORY_ABSENT,
+            header(DATA_OFFSET_AT, &[at::END as u8]),
+            "there is no chunk",
+        ),
+        (
+            "directory-repeated",
+            wire::CHUNK_REPEATED,
+            with_chunk(file, b"DIRE", true, &file[DIRECTORY][CHUNK_HEAD..CHUNK_HEAD + 24]),
+            "the same directory twice",
+        ),
+        (
+            "directory-length",
+            ivg::DIRECTORY_ENTRIES,
+            header(at::BUNDLE_COUNT, &[2]),
+            "an entry more than there are bundles",
+        ),
+        (
+            "explicit-bundles",
+            ivg::BUNDLE_COUNT,
+            header(at::BUNDLE_COUNT, &[11]),
+            "more bundles than vertices that are not corners",
+        ),
+        ("directory-empty", ivg::DIRECTORY_VERTICES, entry(0, 0, 0), "a bundle without vertices"),
+        ("directory-share", ivg::DIRECTORY_VERTICES, entry(0, 7, 7), "more vertices than a bundle may have"),
+        ("directory-sum", ivg::DIRECTORY_VERTICES, entry(0, 6, 6), "more vertices than the lattice has"),
+        (
+            "directory-lacking",
+            ivg::DIRECTORY_VERTICES,
+            entry(0, 1, 1),
+            "a vertex is in no bundle, and none is invalid",
+        ),
+        ("directory-index-short", ivg::DIRECTORY_INDEX, entry(2, 5, 4), "fewer index bytes than vertices"),
+        (
+            "directory-index-long",
+            ivg::DIRECTORY_INDEX,
+            entry(0, 2, 15),
+            "more than seven index bytes a vertex",
+        ),
+    ];
+    list.map(|(mistake, code, bytes, why)| (EXPLICIT_SMALL, mistake, code, bytes, why)).to_vec()
+}
+
+/// Lists of vertices: bundle 1 has 06 00 (vertices 6 and 7), bundle 2 has 02 00 04 (2, 3 and 8).
+fn lists(file: &[u8]) -> Vec<Refused> {
+    let bundle = range(file, RecordId::Bundle(1));
+    let first = |bytes: &[u8]| in_envelope(file, bundle.clone(), bundle.start + RECORD_HEAD, bytes);
+    let list = [
+        ("index-form", ivg::INDEX_NUMBER, first(&[0x86, 0x00]), "a number with more bytes than it needs"),
+        ("index-cut", ivg::INDEX_NUMBER, first(&[0x06, 0x80]), "a number without a last byte"),
+        ("index-corner", ivg::INDEX_VERTEX, first(&[0x04]), "a list that names a corner"),
+        (
+            "index-outside",
+            ivg::INDEX_VERTEX,
+            first(&[0x12]),
+            "a list that names a vertex outside the lattice",
+        ),
+        (
+            "index-length",
+            ivg::INDEX_LENGTH,
+            longer_list(file),
+            "a byte behind the list, in the place of one of padding",
+        ),
+    ];
+    list.map(|(mistake, code, bytes, why)| (EXPLICIT_SMALL, mistake, code, bytes, why)).to_vec()
+}
+
+/// Bundle 2 with a fourth index byte. Its record keeps its length, for it has three bytes of padding.
+fn longer_list(file: &[u8]) -> Vec<u8> {
+    let bundle = range(file, RecordId::Bundle(2));
+    let record = &file[bundle.clone()];
+    let (head, values) = record.split_at(RECORD_HEAD + 3);
+    let values = &values[..3 * 42];
+    let longer = [head, &[0x00], values, &[0, 0]].concat();
+    let file = in_envelope(file, DIRECTORY, DIRECTORY.start + CHUNK_HEAD + 8 + 4, &[4]);
+    in_envelope(&file, bundle.clone(), bundle.start, &longer)
+}
