@@ -15,6 +15,11 @@ pub(super) const OCTREE: &str = "0016-octree";
 const EXPLICIT: &str = "0017-explicit";
 pub(super) const EXPLICIT_SMALL: &str = "0018-explicit-small";
 
+const XYZ: &str = "0020-packed-xyz24";
+const HALF: &str = "0021-pair-f16";
+const HALF_PADDED: &str = "0022-pair-f16x4";
+const SINGLE: &str = "0023-pair-f32";
+
 /// The chunk `DIRE` of the small file: three entries, four bytes of padding.
 const DIRECTORY: Range<usize> = at::END..at::END + 48;
 
@@ -39,6 +44,23 @@ fn harmonics() -> Vec<u8> {
     let options =
         EncodeOptions { encoding: Encoding::Sh2, vertices_per_slice: 2, seed: 7, ..EncodeOptions::new() };
     encode(&GridSource::new(lattice, &radiance(&lattice, 5)), &options).expect("a sound grid")
+}
+
+/// Light in one of the encodings with a direction and a colour for each hemisphere.
+fn directed(encoding: Encoding) -> Vec<u8> {
+    let lattice = lattice([2, 3, 2]);
+    let options = EncodeOptions { encoding, vertices_per_slice: 2, seed: 7, ..EncodeOptions::new() };
+    encode(&GridSource::new(lattice, &light(&lattice, 10)), &options).expect("a sound grid")
+}
+
+/// A file in whose corners number `n`, counted from 0, is overwritten.
+fn with_number(file: &[u8], n: usize, bytes: &[u8]) -> Vec<u8> {
+    let corners = range(file, RecordId::Corners);
+    in_envelope(file, corners.clone(), corners.start + RECORD_HEAD + n * bytes.len(), bytes)
+}
+
+fn negative_zero() -> Vec<u8> {
+    with_number(&directed(Encoding::PairF32), 4, &(-0.0f32).to_le_bytes())
 }
 
 fn octree() -> Vec<u8> {
@@ -89,6 +111,11 @@ pub(super) fn accepted() -> Vec<Vector> {
         (EXPLICIT, explicit(), "the order explicit, sh2-28; numbers of two bytes in the lists"),
         (EXPLICIT_SMALL, explicit_small(false), "the order explicit; for files to refuse to differ from"),
         ("0019-explicit-validity", explicit_small(true), "a vertex inside geometry is in no bundle"),
+        (XYZ, directed(Encoding::PackedXyz24), "packed-xyz24"),
+        (HALF, directed(Encoding::PairF16), "pair-f16"),
+        (HALF_PADDED, directed(Encoding::PairF16x4), "pair-f16x4"),
+        (SINGLE, directed(Encoding::PairF32), "pair-f32"),
+        ("0024-negative-zero", negative_zero(), "a component of a colour that is -0 is read as 0"),
     ];
     list.into_iter().map(|(name, bytes, why)| Vector::accepted(Format::Ivg, name, bytes, why)).collect()
 }
@@ -114,9 +141,104 @@ pub(super) fn refused(harmonics: &[u8], octree: &[u8], explicit: &[u8], slices: 
             "a directory in a file of the order slices",
         ),
     ];
+    list.extend(directed_codes());
     list.extend(directories(explicit));
     list.extend(lists(explicit));
     list
+}
+
+/// Numbers of the corners, eight vertices: 144 numbers of colours, then 144 of directions; with a fourth, 192 of each.
+fn directed_codes() -> Vec<Refused> {
+    let [xyz, half, padded, single] =
+        [Encoding::PackedXyz24, Encoding::PairF16, Encoding::PairF16x4, Encoding::PairF32].map(directed);
+    let f16 = |bits: u16| bits.to_le_bytes();
+    let f32 = |value: f32| value.to_le_bytes();
+    // Behind 48 colours of four bytes, the codes are bytes.
+    let code = |n: usize, bytes: &[u8]| {
+        let corners = range(&xyz, RecordId::Corners);
+        in_envelope(&xyz, corners.clone(), corners.start + RECORD_HEAD + 192 + n, bytes)
+    };
+    vec![
+        (
+            XYZ,
+            "xyz-least",
+            ivg::DIRECTION_CODE,
+            code(4, &[0x80]),
+            "a coordinate with the forbidden value -128",
+        ),
+        (XYZ, "xyz-zero", ivg::DIRECTION_CODE, code(3, &[0; 3]), "a direction without a length"),
+        (
+            HALF,
+            "half-negative",
+            ivg::PAIR_COLOUR,
+            with_number(&half, 5, &f16(0x8001)),
+            "a colour less than 0",
+        ),
+        (HALF, "half-infinite", ivg::PAIR_COLOUR, with_number(&half, 5, &f16(0x7C00)), "an infinite colour"),
+        (
+            HALF,
+            "half-long",
+            ivg::PAIR_DIRECTION,
+            with_number(&half, 150, &f16(0x3C01)),
+            "a component above 1",
+        ),
+        (
+            HALF,
+            "half-nan",
+            ivg::PAIR_DIRECTION,
+            with_number(&half, 150, &f16(0x7E00)),
+            "a component that is no number",
+        ),
+        (
+            HALF_PADDED,
+            "half-padded-negative",
+            ivg::PAIR_COLOUR,
+            with_number(&padded, 6, &f16(0xBC00)),
+            "a colour less than 0",
+        ),
+        (
+            HALF_PADDED,
+            "half-padded-long",
+            ivg::PAIR_DIRECTION,
+            with_number(&padded, 193, &f16(0xBC01)),
+            "a component below -1",
+        ),
+        (
+            HALF_PADDED,
+            "half-fourth",
+            wire::RESERVED,
+            with_number(&padded, 7, &f16(0x3C00)),
+            "a fourth number that is not 0",
+        ),
+        (
+            HALF_PADDED,
+            "half-fourth-sign",
+            wire::RESERVED,
+            with_number(&padded, 195, &f16(0x8000)),
+            "a fourth number of -0",
+        ),
+        (
+            SINGLE,
+            "single-negative",
+            ivg::PAIR_COLOUR,
+            with_number(&single, 143, &f32(-1e-30)),
+            "a colour less than 0",
+        ),
+        (
+            SINGLE,
+            "single-nan",
+            ivg::PAIR_COLOUR,
+            with_number(&single, 143, &f32(f32::NAN)),
+            "a colour that is no number",
+        ),
+        (
+            SINGLE,
+            "single-long",
+            ivg::PAIR_DIRECTION,
+            with_number(&single, 144, &f32(1.0f32.next_up())),
+            "a component above 1",
+        ),
+    ]
 }
 
 fn directories(file: &[u8]) -> Vec<Refused> {
