@@ -24,15 +24,11 @@ pub(super) fn markdown(quantiser: &str) -> String {
         |value: &Value| list(integers(value).iter().map(|n| n.to_string().replace('-', "−")).collect());
     let bits = |value: &Value| list(integers(value).iter().map(|n| format!("0x{n:08X}")).collect());
     let mut out = String::new();
-    match quantiser {
-        "rgb9e5" => out.push_str("| colour | code | |\n|---|---|---|\n"),
-        "ratio" => {
-            out.push_str("| c_0 | codes 1 to 8 | c_1 … c_8, as the bits of binary32 |\n|---|---|---|\n")
-        }
-        _ => {
-            out.push_str("| code | u, v | point | direction, as the bits of binary32 |\n|---|---|---|---|\n")
-        }
-    }
+    out.push_str(match quantiser {
+        "rgb9e5" => "| colour | code | |\n|---|---|---|\n",
+        "ratio" => "| c_0 | codes 1 to 8 | c_1 … c_8, as the bits of binary32 |\n|---|---|---|\n",
+        _ => "| code | u, v | point | direction, as the bits of binary32 |\n|---|---|---|---|\n",
+    });
     for row in rows("values", quantiser) {
         let code = |digits: usize| format!("0x{:0digits$X}", row["code"].as_integer().unwrap());
         let line = match quantiser {
