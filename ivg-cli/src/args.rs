@@ -1,10 +1,16 @@
 //! The command line: names, defaults, units. Nothing here computes.
 
+mod grid;
+mod registry;
+
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(crate) use self::grid::{
+    BakeSettings, EstimatorArgument, FilterArgument, RecodeArguments, ReconstructionArgument, SampleArguments,
+};
 use crate::scene_args::{Bounds, GridSize, PictureSize, ScheduleArgument};
 
 /// Streams lit 3D scenes: bakes indirect light into an irradiance vector grid, orders meshes coarse-to-fine, serves both,
@@ -32,6 +38,8 @@ pub(crate) enum Command {
     Info(FileArguments),
     /// Validate an .ivg or .pmesh file; the exit status is the verdict: 0 ok, 40 need-more, 41 invalid, 42 unsupported, 43 limit.
     Check(FileArguments),
+    /// Write an .ivg file in another encoding or order.
+    Recode(RecodeArguments),
     /// Irradiance at points with normals, from an .ivg file, as CSV.
     Sample(SampleArguments),
     /// What a client knows: a grid as .npy, a mesh at a level as .ply or .obj.
@@ -52,56 +60,6 @@ pub(crate) struct SceneArguments {
     /// Adds lights, a camera and the unit of length to the scene (TOML; see ivg-scene/LIGHTS.md).
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) lights: Option<PathBuf>,
-}
-
-/// How a grid is baked.
-#[derive(Debug, Args)]
-pub(crate) struct BakeSettings {
-    /// Number of grid vertices along x, y and z.
-    #[arg(long, value_name = "NXxNYxNZ", default_value = "16x16x16")]
-    pub(crate) grid: GridSize,
-    /// First and last vertex of the grid, in metres; default: the scene's bounds and a margin.
-    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
-    pub(crate) bounds: Option<Bounds>,
-    /// Number of photons traced.
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
-    pub(crate) photons: u64,
-    /// How photon flights become irradiance vectors.
-    #[arg(long, value_enum, default_value_t = EstimatorArgument::TrackLength)]
-    pub(crate) estimator: EstimatorArgument,
-    /// How the file stores a vertex.
-    #[arg(long, value_enum, default_value_t = EncodingArgument::PackedOct24)]
-    pub(crate) encoding: EncodingArgument,
-    /// Seed of the random numbers: the same seed gives the same bytes.
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// Number of threads [default: one a core]; the result does not depend on it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-    /// Vertices of each slice that one bundle brings.
-    #[arg(long, value_name = "S", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) per_slice: u32,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum EstimatorArgument {
-    /// Flight length in the dual cell of a vertex: unbiased, least noise.
-    TrackLength,
-    /// Crossings of dual faces, divided by the cosine: unbiased, noisy at grazing angles.
-    FaceCrossing,
-    /// Crossings as RR-6983 prints them: biased by -1/3 in uniform light, for comparison.
-    #[value(name = "face-crossing-rr6983")]
-    FaceCrossingRr6983,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum EncodingArgument {
-    /// 24-bit octahedral direction and shared-exponent colour a hemisphere: 42 bytes a vertex.
-    #[value(name = "packed-oct24")]
-    PackedOct24,
-    /// All 54 numbers as f32: 216 bytes a vertex.
-    #[value(name = "vectors-f32")]
-    VectorsF32,
 }
 
 #[derive(Debug, Args)]
@@ -229,46 +187,11 @@ pub(crate) struct FileArguments {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct SampleArguments {
-    /// An .ivg file.
-    pub(crate) file: PathBuf,
-    /// CSV file with the header x,y,z,nx,ny,nz: positions in metres and unit normals; - reads stdin.
-    #[arg(long, value_name = "POINTS.csv")]
-    pub(crate) at: PathBuf,
-    /// How irradiance for a normal is made from the vectors.
-    #[arg(long, value_enum, default_value_t = ReconstructionArgument::Auto)]
-    pub(crate) reconstruction: ReconstructionArgument,
-    /// How vectors between grid vertices are made.
-    #[arg(long, value_enum, default_value_t = FilterArgument::Trilinear)]
-    pub(crate) filter: FilterArgument,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ReconstructionArgument {
-    /// The papers' blend by squared normal components.
-    N2,
-    /// Three vectors, corrected: exact on the axes and in uniform light.
-    Three,
-    /// All six vectors.
-    Six,
-    /// `three` for packed encodings, `six` for vectors-f32.
-    Auto,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FilterArgument {
-    /// Linear along each axis.
-    Trilinear,
-    /// Cubic B-spline: smoother, and smooths.
-    Tricubic,
-}
-
-#[derive(Debug, Args)]
 pub(crate) struct ExtractArguments {
     /// An .ivg or .pmesh file.
     pub(crate) file: PathBuf,
     /// Output. For a grid .npy: f32 of shape (nz, ny, nx, 6 hemispheres +x -x +y -y +z -z, 3 colours, 3 components), W/m²;
-    /// for a mesh .ply or .obj.
+    /// if it stores radiance harmonics (nz, ny, nx, 3 colours, 9 coefficients), W/(m² sr). For a mesh .ply or .obj.
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: PathBuf,
     /// Use the first N bytes of the file only: what a client knows then.

@@ -3,16 +3,17 @@
 use std::time::{Duration, Instant};
 
 use ivg_bake::{BakeOptions, BakeStats, Estimator, PilotReport};
-use ivg_format::{EncodeOptions, Encoding, GridSource};
+use ivg_format::{EncodeOptions, Quantity};
 use ivg_grid::IrradianceGrid;
 use ivg_scene::import::{self, ImportOptions};
 use ivg_scene::plan::{self, PlanOptions};
 use ivg_scene::{EffectPlan, FlatScene, Need, Scene};
 
-use crate::args::{BakeSettings, EncodingArgument, EstimatorArgument, SceneArguments};
+use crate::args::{BakeSettings, EstimatorArgument, SceneArguments};
 use crate::failure::Failure;
 use crate::files::shown;
 use crate::progress::BakeBar;
+use crate::writing::{self, Extras};
 
 /// A scene with everything a bake or a picture needs to know about it.
 #[derive(Debug)]
@@ -83,6 +84,13 @@ pub(crate) fn report_unsupported(scene: &Scene, plan: &EffectPlan) {
 pub(crate) fn bake(loaded: &LoadedScene, settings: &BakeSettings) -> Result<Baked, Failure> {
     loaded.scene.require_light().map_err(Failure::new)?;
     let options = bake_options(settings);
+    if options.quantity == Quantity::Radiance && options.estimator != Estimator::TrackLength {
+        return Err(Failure::usage(format_args!(
+            "{} stores radiance, which the estimator {} does not give; use --estimator track-length, or an encoding of irradiance vectors",
+            settings.encoding.name(),
+            options.estimator.name(),
+        )));
+    }
     let start = Instant::now();
     let (plan, _) = plan(loaded, PlanOptions::default().energy_cutoff, &options)?;
     report_unsupported(&loaded.scene, &plan);
@@ -108,7 +116,7 @@ pub(crate) fn bake_options(settings: &BakeSettings) -> BakeOptions {
         },
         seed: settings.seed,
         threads: settings.threads.map(usize::from),
-        ..BakeOptions::default()
+        quantity: settings.encoding.quantity(),
     }
 }
 
@@ -121,26 +129,24 @@ fn encode(
 ) -> Result<Vec<u8>, Failure> {
     let estimator = bake_options(settings).estimator.name();
     let numbers = [settings.photons, settings.seed, u64::from(plan.max_bounces)].map(|n| n.to_string());
-    let metadata = [
-        ("generator", concat!("ivg ", env!("CARGO_PKG_VERSION"))),
-        ("estimator", estimator),
-        ("photons", &numbers[0]),
-        ("seed", &numbers[1]),
-        ("bounces", &numbers[2]),
-    ];
-    let lights: Vec<ivg_format::BakedLight<'_>> = stats
-        .lights
-        .iter()
-        .map(|light| ivg_format::BakedLight { name: &light.name, direct_included: light.direct })
-        .collect();
-    let source = GridSource { lights: &lights, meta: &metadata, ..grid.as_source() };
+    let [photons, seed, bounces] = numbers;
+    let extras = Extras {
+        lights: stats.lights.iter().map(|light| (light.name.clone(), light.direct)).collect(),
+        metadata: [
+            ("generator", concat!("ivg ", env!("CARGO_PKG_VERSION")).to_owned()),
+            ("estimator", estimator.to_owned()),
+            ("photons", photons),
+            ("seed", seed),
+            ("bounces", bounces),
+        ]
+        .map(|(key, value)| (key.to_owned(), value))
+        .into(),
+    };
     let options = EncodeOptions {
-        encoding: match settings.encoding {
-            EncodingArgument::PackedOct24 => Encoding::PackedOct24,
-            EncodingArgument::VectorsF32 => Encoding::VectorsF32,
-        },
+        encoding: settings.encoding,
+        order: settings.order,
         vertices_per_slice: settings.per_slice,
         ..EncodeOptions::default()
     };
-    ivg_format::encode(&source, &options).map_err(Failure::new)
+    writing::encode(grid.as_source(), &extras, &options)
 }

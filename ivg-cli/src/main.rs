@@ -11,13 +11,16 @@ mod convert;
 mod failure;
 mod files;
 mod kind;
+mod loss;
 mod npy;
 mod packing;
 mod picture;
+mod points;
 mod progress;
 mod reading;
 mod scene_args;
 mod table;
+mod writing;
 
 use std::process::ExitCode;
 
@@ -55,6 +58,7 @@ fn run(command: Command) -> Result<ExitCode, Failure> {
         Command::Pack(arguments) => commands::pack::run(&arguments),
         Command::Info(arguments) => commands::info::run(&arguments),
         Command::Check(arguments) => commands::check::run(&arguments),
+        Command::Recode(arguments) => commands::recode::run(&arguments),
         Command::Sample(arguments) => commands::sample::run(&arguments),
         Command::Extract(arguments) => commands::extract::run(&arguments),
         Command::Render(arguments) => commands::render::run(&arguments),

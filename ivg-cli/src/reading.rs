@@ -18,7 +18,8 @@ pub(crate) fn grid(path: &Path, bytes: &[u8]) -> Result<(GridHeader, IrradianceG
         match decoder.push(rest).map_err(|error| Failure::file(path, error))? {
             Step::NeedMore(_) => break,
             Step::Consumed(_, ivg_format::Event::Header(header)) => {
-                grid = Some(IrradianceGrid::new(header.lattice).map_err(|error| Failure::file(path, error))?);
+                let new = IrradianceGrid::of(header.lattice, header.encoding.quantity());
+                grid = Some(new.map_err(|error| Failure::file(path, error))?);
             }
             Step::Consumed(_, event) => {
                 if let Some(grid) = &mut grid {

@@ -87,7 +87,7 @@ fn sample_appends_irradiance_to_its_points() {
     let place = Workplace::with_room();
     place.ok(&[&["bake", "room.obj", "-o", "light.ivg"][..], &SMALL].concat());
     place.write("points.csv", b"x,y,z,nx,ny,nz\n0.5,0.4,0.5,0,1,0\n0.5,0.4,0.5,0,0,-1\n");
-    let output = text(&place.ok(&["sample", "light.ivg", "--at", "points.csv"]));
+    let output = text(&place.ok(&["sample", "light.ivg", "--points", "points.csv"]));
     let lines: Vec<&str> = output.lines().collect();
     assert_eq!(lines[0], "x,y,z,nx,ny,nz,r,g,b");
     assert_eq!(lines.len(), 3);
@@ -96,11 +96,11 @@ fn sample_appends_irradiance_to_its_points() {
     assert!(up[6..].iter().all(|&e| e > 0.0), "the room reflects light: {up:?}");
     for (bad, named) in [
         ("x,y,z\n0,0,0\n", "x,y,z,nx,ny,nz"),
-        ("x,y,z,nx,ny,nz\n0,0,0,0,2,0\n", "line 2"),
-        ("x,y,z,nx,ny,nz\n0,0,0,0,1,0\n0,0,nan,0,1,0\n", "line 3"),
+        ("x,y,z,nx,ny,nz\n0,0,0,0,0,0\n", "line 2, columns nx,ny,nz"),
+        ("x,y,z,nx,ny,nz\n0,0,0,0,1,0\n0,0,nan,0,1,0\n", "line 3, column z"),
     ] {
         place.write("bad.csv", bad.as_bytes());
-        let output = place.run(&["sample", "light.ivg", "--at", "bad.csv"]);
+        let output = place.run(&["sample", "light.ivg", "--points", "bad.csv"]);
         assert_eq!(output.status.code(), Some(1));
         assert!(output.stdout.is_empty(), "nothing is printed before the input is known to be right");
         assert!(text(&output.stderr).contains(named), "{}", text(&output.stderr));

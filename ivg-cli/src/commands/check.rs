@@ -59,8 +59,17 @@ struct Found {
 
 fn check_grid(bytes: &[u8]) -> Result<Found, Error> {
     let mut found = Found::default();
+    let mut coverage = None;
     ivg_format::decode_all(bytes, &ivg_format::Limits::default(), |event| {
         found.parts += 1;
+        if let ivg_format::Event::Header(header) = event
+            && header.order == ivg_format::Order::Explicit
+        {
+            coverage = Some(Coverage::new(header));
+        }
+        if let Some(coverage) = &mut coverage {
+            coverage.take(&event);
+        }
         if let ivg_format::Event::Corners(bundle) | ivg_format::Event::Bundle(bundle) = event
             && let Some((vertex, hemisphere)) = bundle.outside_hemisphere()
         {
@@ -71,7 +80,64 @@ fn check_grid(bytes: &[u8]) -> Result<Found, Error> {
             ));
         }
     })?;
+    if let Some(coverage) = coverage {
+        coverage.warn(&mut found.warnings);
+    }
     Ok(found)
+}
+
+/// Which vertices a file of the order explicit brings (IVG-EXP-04).
+struct Coverage {
+    vertices: Vec<Brought>,
+}
+
+/// What is known of a vertex.
+#[derive(Clone, Copy, Default)]
+struct Brought {
+    once: bool,
+    again: bool,
+    /// Light does not reach it: it need not be brought.
+    inside: bool,
+}
+
+impl Coverage {
+    fn new(header: &ivg_format::Header) -> Self {
+        // The decoder has accepted the number, which is within its limits.
+        Self { vertices: vec![Brought::default(); header.lattice.vertex_count() as usize] }
+    }
+
+    fn take(&mut self, event: &ivg_format::Event<'_>) {
+        match event {
+            ivg_format::Event::Corners(bundle) | ivg_format::Event::Bundle(bundle) => {
+                for vertex in bundle.vertices() {
+                    let vertex = &mut self.vertices[vertex as usize];
+                    vertex.again = vertex.once;
+                    vertex.once = true;
+                }
+            }
+            ivg_format::Event::Validity(block) => {
+                let vertices = &mut self.vertices[block.first_vertex() as usize..];
+                for (vertex, &validity) in vertices.iter_mut().zip(block.validity()) {
+                    vertex.inside = validity == 0;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn warn(&self, warnings: &mut Vec<String>) {
+        let rules: [(&str, fn(&Brought) -> bool); 2] = [
+            ("in no bundle although not inside geometry", |vertex| !vertex.once && !vertex.inside),
+            ("in more than one bundle", |vertex| vertex.again),
+        ];
+        for (what, breaks) in rules {
+            if let Some(first) = self.vertices.iter().position(breaks) {
+                let count = self.vertices.iter().filter(|vertex| breaks(vertex)).count();
+                warnings
+                    .push(format!("{count} vertices are {what}, the first is vertex {first} (IVG-EXP-04)"));
+            }
+        }
+    }
 }
 
 /// Checks every packet by replaying it.

@@ -8,13 +8,14 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use ivg_format::{Encoding, Order};
 use ivg_grid::{FillOptions, Reconstruction};
 use ivg_render::{Image, RenderOptions, RenderScene};
 use ivg_scene::{Camera, EffectPlan};
 use ivg_stream::blocking::{Server, Session};
 use ivg_stream::{FetchOptions, Goal, Progress, ServerOptions};
 
-use crate::args::{BakeSettings, DemoArguments, EncodingArgument, EstimatorArgument};
+use crate::args::{BakeSettings, DemoArguments, EstimatorArgument};
 use crate::baking::{self, LoadedScene};
 use crate::failure::Failure;
 use crate::packing::{self, Meshes};
@@ -110,7 +111,8 @@ fn settings(arguments: &DemoArguments) -> BakeSettings {
         bounds: None,
         photons: arguments.photons,
         estimator: EstimatorArgument::TrackLength,
-        encoding: EncodingArgument::PackedOct24,
+        encoding: Encoding::PackedOct24,
+        order: Order::Slices,
         seed: 1,
         threads: None,
         per_slice: PER_SLICE,
@@ -168,9 +170,9 @@ fn draw(
     let loaded = LoadedScene::from_scene(scene)?;
     let mut render_scene = RenderScene::from_scene(&loaded.scene, &loaded.flat, camera);
     let mut options = RenderOptions::for_plan(plan, arguments.size.width, arguments.size.height);
-    options.reconstruction = Reconstruction::ThreeVector;
-    match session.grid() {
-        Some(grid) if stage.light.is_some() => {
+    match (session.grid(), session.grid_header()) {
+        (Some(grid), Some(header)) if stage.light.is_some() => {
+            options.reconstruction = Reconstruction::for_encoding(header.encoding);
             render_scene.grid = Some(ivg_grid::fill(grid, &FillOptions::default()));
         }
         _ => options.indirect = false,

@@ -1,5 +1,6 @@
 use std::process::ExitCode;
 
+use ivg_format::{Quantity, Values};
 use ivg_grid::{FillOptions, IrradianceGrid};
 use ivg_scene::export;
 
@@ -32,48 +33,62 @@ fn grid(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
         grid = ivg_grid::fill(&grid, &FillOptions::default());
     }
     let [nx, ny, nz] = header.lattice.dims.map(usize::from);
-    let values = Values { grid: &grid, keep_all: arguments.fill, next: 0 };
-    let array =
-        npy::encode(&[nz, ny, nx, 6, 3, 3], values).map_err(|error| Failure::file(&arguments.out, error))?;
+    let mut shape = vec![nz, ny, nx];
+    shape.extend_from_slice(match grid.quantity() {
+        Quantity::Vectors => &[6, 3, 3],
+        Quantity::Radiance => &[3, 9],
+    });
+    let numbers = Numbers { grid: &grid, keep_all: arguments.fill, next: 0 };
+    let array = npy::encode(&shape, numbers).map_err(|error| Failure::file(&arguments.out, error))?;
     files::write(&arguments.out, &array)?;
     let invalid = grid.vertex_count() - grid.valid_count();
     let gaps = if arguments.fill { "filled" } else { "NaN" };
     files::print(&format!(
-        "{}: {nz} x {ny} x {nx} x 6 x 3 x 3 f32, {known} of {} vertices received, {invalid} invalid; gaps are {gaps}; {used} bytes used\n",
+        "{}: {} f32, {known} of {} vertices received, {invalid} invalid; gaps are {gaps}; {used} bytes used\n",
         arguments.out.display(),
+        shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(" x "),
         grid.vertex_count(),
     ));
     Ok(ExitCode::SUCCESS)
 }
 
-/// Numbers of one vertex: six hemispheres, three channels, three components.
-const PER_VERTEX: usize = 54;
-
 /// All numbers of a grid in file order: NaN for vertices that have not arrived or that light does not reach.
-struct Values<'a> {
+struct Numbers<'a> {
     grid: &'a IrradianceGrid,
     keep_all: bool,
     next: usize,
 }
 
-impl Iterator for Values<'_> {
+impl Numbers<'_> {
+    fn per_vertex(&self) -> usize {
+        match self.grid.quantity() {
+            Quantity::Vectors => 54,
+            Quantity::Radiance => 27,
+        }
+    }
+}
+
+impl Iterator for Numbers<'_> {
     type Item = f32;
 
     fn next(&mut self) -> Option<f32> {
-        let (vertex, number) = (self.next / PER_VERTEX, self.next % PER_VERTEX);
-        let vectors = self.grid.vectors().get(vertex)?;
+        let (vertex, number) = (self.next / self.per_vertex(), self.next % self.per_vertex());
+        let value = match self.grid.values() {
+            Values::Vectors(vectors) => vectors.get(vertex)?.as_flattened().as_flattened()[number],
+            Values::Radiance(radiance) => radiance.get(vertex)?.as_flattened()[number],
+        };
         self.next += 1;
         let known = self.keep_all || (self.grid.is_received(vertex) && self.grid.is_valid(vertex));
-        Some(if known { vectors[number / 9][number / 3 % 3][number % 3] } else { f32::NAN })
+        Some(if known { value } else { f32::NAN })
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = self.grid.vertex_count() * PER_VERTEX - self.next;
+        let left = self.grid.vertex_count() * self.per_vertex() - self.next;
         (left, Some(left))
     }
 }
 
-impl ExactSizeIterator for Values<'_> {}
+impl ExactSizeIterator for Numbers<'_> {}
 
 fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure> {
     if arguments.fill {

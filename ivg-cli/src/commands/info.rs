@@ -80,7 +80,13 @@ fn grid(path: &Path, bytes: &[u8]) -> Result<Description, Failure> {
         let Step::Consumed(used, event) = step else { break };
         match event {
             ivg_format::Event::Header(header) => {
-                parts.push(Part { what: "header".to_owned(), offset, bytes: used as u64 });
+                let length = u64::from(header.header_bytes);
+                parts.push(Part { what: "header".to_owned(), offset, bytes: length });
+                // The directory of the order explicit is read with the header.
+                if used as u64 > length {
+                    let what = format!("chunk {}", ivg_format::DIRECTORY);
+                    parts.push(Part { what, offset: offset + length, bytes: used as u64 - length });
+                }
                 description = Some(grid_fields(header, bytes.len()));
             }
             ivg_format::Event::Chunk(chunk) => {
@@ -117,6 +123,7 @@ fn grid(path: &Path, bytes: &[u8]) -> Result<Description, Failure> {
 
 fn grid_fields(header: &ivg_format::Header, length: usize) -> Vec<(&'static str, Value)> {
     let lattice = &header.lattice;
+    let index_bytes: u64 = header.records().map(|id| header.index_bytes(id)).sum();
     vec![
         ("format", "ivg".into()),
         ("version", format!("{}.{}", ivg_format::MAJOR, header.minor).into()),
@@ -130,12 +137,14 @@ fn grid_fields(header: &ivg_format::Header, length: usize) -> Vec<(&'static str,
         ("vertices", lattice.vertex_count().into()),
         ("units", header.units.name().into()),
         ("encoding", header.encoding.name().into()),
+        ("quantity", header.encoding.quantity().name().into()),
         ("bytes_per_vertex", header.encoding.bytes_per_vertex().into()),
         ("scale_exponent", header.scale_exponent.into()),
         ("order", header.order.name().into()),
         ("vertices_per_slice", header.vertices_per_slice.into()),
         ("seed", header.seed.into()),
         ("bundles", header.bundle_count.into()),
+        ("index_bytes", index_bytes.into()),
         ("validity_records", header.validity_records.into()),
     ]
 }

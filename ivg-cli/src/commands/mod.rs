@@ -9,6 +9,7 @@ pub(crate) mod info;
 pub(crate) mod mesh;
 pub(crate) mod pack;
 pub(crate) mod plan;
+pub(crate) mod recode;
 pub(crate) mod render;
 pub(crate) mod sample;
 pub(crate) mod serve;

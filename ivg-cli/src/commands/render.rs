@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 use ivg_bake::reference::{Oracle, Sampling, Shown};
+use ivg_format::{Header, Quantity};
 use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction};
 use ivg_render::{Image, RenderOptions, RenderScene};
 use ivg_scene::plan::{self, PlanOptions};
@@ -69,12 +70,12 @@ fn open(arguments: &RenderArguments) -> Result<Source, Failure> {
             Session::open(&arguments.source, FetchOptions::default(), &mut |_| {}).map_err(Failure::new)?;
         session.fetch_until(Goal::ALL, &mut |_| {}).map_err(Failure::new)?;
         let scene = session.scene_at(1.0);
-        return packed(arguments, scene, session.grid());
+        return packed(arguments, scene, session.grid().zip(session.grid_header()));
     }
     if path.is_dir() || path.join("scene.glb").is_file() {
         let mut local = LocalScene::open(path, SceneLimits::default()).map_err(Failure::new)?;
         let scene = local.scene_at(1.0);
-        return packed(arguments, scene, local.grid());
+        return packed(arguments, scene, local.grid().zip(local.grid_header()));
     }
     let loaded = LoadedScene::load(path, arguments.lights.as_deref())?;
     if !wants_grid {
@@ -91,8 +92,12 @@ fn open(arguments: &RenderArguments) -> Result<Source, Failure> {
         });
     }
     let baked = baking::bake(&loaded, &arguments.bake)?;
-    // Straight from the baker, nothing is packed: all six vectors are as they were.
-    Ok(Source { loaded, plan: baked.plan, grid: Some((baked.grid, Reconstruction::SixVector)) })
+    // Straight from the baker, nothing is packed: irradiance vectors are as they were, all six of them.
+    let reconstruction = match baked.grid.quantity() {
+        Quantity::Vectors => Reconstruction::SixVector,
+        Quantity::Radiance => Reconstruction::Harmonics,
+    };
+    Ok(Source { loaded, plan: baked.plan, grid: Some((baked.grid, reconstruction)) })
 }
 
 /// What a picture needs, without a pilot run: nothing is baked. Reports what is not simulated.
@@ -106,7 +111,7 @@ fn planned(loaded: &LoadedScene) -> EffectPlan {
 fn packed(
     arguments: &RenderArguments,
     scene: ivg_scene::Scene,
-    grid: Option<&IrradianceGrid>,
+    grid: Option<(&IrradianceGrid, &Header)>,
 ) -> Result<Source, Failure> {
     if arguments.lights.is_some() || arguments.ivg.is_some() {
         return Err(Failure::usage("--lights and --ivg are for scene files; a packed scene has its own"));
@@ -114,7 +119,8 @@ fn packed(
     let loaded = LoadedScene::from_scene(scene)?;
     let plan = planned(&loaded);
     let grid = grid.filter(|_| arguments.indirect == IndirectArgument::Grid);
-    Ok(Source { loaded, plan, grid: grid.map(|grid| (grid.clone(), Reconstruction::ThreeVector)) })
+    let grid = grid.map(|(grid, header)| (grid.clone(), Reconstruction::for_encoding(header.encoding)));
+    Ok(Source { loaded, plan, grid })
 }
 
 fn camera(arguments: &RenderArguments, loaded: &LoadedScene) -> Camera {

@@ -1,0 +1,121 @@
+//! Arguments of the commands that make and read grids.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use ivg_format::{Encoding, Order};
+
+use super::registry;
+use crate::scene_args::{Bounds, GridSize};
+
+/// How a grid is baked.
+#[derive(Debug, Args)]
+pub(crate) struct BakeSettings {
+    /// Number of grid vertices along x, y and z.
+    #[arg(long, value_name = "NXxNYxNZ", default_value = "16x16x16")]
+    pub(crate) grid: GridSize,
+    /// First and last vertex of the grid, in metres; default: the scene's bounds and a margin.
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
+    pub(crate) bounds: Option<Bounds>,
+    /// Number of photons traced.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) photons: u64,
+    /// How photon flights become what the grid holds; sh2-28 needs track-length.
+    #[arg(long, value_enum, default_value_t = EstimatorArgument::TrackLength)]
+    pub(crate) estimator: EstimatorArgument,
+    /// How the file stores a vertex.
+    #[arg(long, value_parser = registry::encoding(), default_value = "packed-oct24")]
+    pub(crate) encoding: Encoding,
+    /// In which order the file brings the vertices.
+    #[arg(long, value_parser = registry::order(), default_value = "slices")]
+    pub(crate) order: Order,
+    /// Seed of the random numbers: the same seed gives the same bytes.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Number of threads [default: one a core]; the result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Vertices of each slice across the longest axis that one bundle brings; bundles of other orders are as large.
+    #[arg(long, value_name = "S", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) per_slice: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EstimatorArgument {
+    /// Flight length in the dual cell of a vertex: unbiased, least noise.
+    TrackLength,
+    /// Crossings of dual faces, divided by the cosine: unbiased, noisy at grazing angles.
+    FaceCrossing,
+    /// Crossings as RR-6983 prints them: biased by -1/3 in uniform light, for comparison.
+    #[value(name = "face-crossing-rr6983")]
+    FaceCrossingRr6983,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RecodeArguments {
+    /// The .ivg file to read, of any encoding and order.
+    pub(crate) file: PathBuf,
+    /// Output file; may be the file itself.
+    #[arg(short, long, value_name = "FILE.ivg")]
+    pub(crate) out: PathBuf,
+    /// How the output stores a vertex [default: as the input].
+    #[arg(long, value_parser = registry::encoding())]
+    pub(crate) encoding: Option<Encoding>,
+    /// In which order the output brings the vertices [default: as the input].
+    #[arg(long, value_parser = registry::order())]
+    pub(crate) order: Option<Order>,
+    /// Vertices of each slice across the longest axis that one bundle brings; bundles of other orders are as large [default:
+    /// as in the input].
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) per_slice: Option<u32>,
+    /// Seed of the order [default: as in the input].
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Print figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SampleArguments {
+    /// An .ivg file of any encoding.
+    pub(crate) file: PathBuf,
+    /// CSV file whose header names the columns x,y,z (positions in metres) and nx,ny,nz (normals, of any length) in any
+    /// order; further columns are kept. - reads stdin.
+    #[arg(long, value_name = "POINTS.csv", alias = "at")]
+    pub(crate) points: PathBuf,
+    /// Output: the same rows and the columns r,g,b, irradiance in W/m² [default: stdout].
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub(crate) out: Option<PathBuf>,
+    /// How irradiance for a normal is made from what the file stores.
+    #[arg(long, value_enum, default_value_t = ReconstructionArgument::Auto)]
+    pub(crate) reconstruction: ReconstructionArgument,
+    /// How values between grid vertices are made.
+    #[arg(long, value_enum, default_value_t = FilterArgument::Trilinear)]
+    pub(crate) filter: FilterArgument,
+    /// Give vertices inside geometry, and those that a file cut short lacks, a value by push-pull first, as a client does.
+    #[arg(long)]
+    pub(crate) fill: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReconstructionArgument {
+    /// The papers' blend by squared normal components.
+    N2,
+    /// Three irradiance vectors, corrected: exact on the axes and in uniform light.
+    Three,
+    /// All six irradiance vectors.
+    Six,
+    /// Spherical harmonics.
+    Sh2,
+    /// The most accurate one for the encoding: `six` for vectors-f32, `sh2` for sh2-28, `three` for all others.
+    Auto,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FilterArgument {
+    /// Linear along each axis.
+    Trilinear,
+    /// Cubic B-spline: smoother, and smooths.
+    Tricubic,
+}

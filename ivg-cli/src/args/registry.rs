@@ -1,0 +1,45 @@
+//! Encodings and orders as arguments: the names of the format's registries, with what each is good for.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use ivg_format::{Encoding, Order};
+
+/// The name of an encoding.
+pub(crate) fn encoding() -> impl TypedValueParser<Value = Encoding> {
+    let values = Encoding::ALL.iter().map(|encoding| {
+        let bytes = encoding.bytes_per_vertex();
+        PossibleValue::new(encoding.name())
+            .help(format!("{}: {bytes} bytes a vertex", encoding_text(encoding.name())))
+    });
+    PossibleValuesParser::new(values)
+        .try_map(|name| Encoding::from_name(&name).ok_or("not an encoding of this release"))
+}
+
+/// The name of an order.
+pub(crate) fn order() -> impl TypedValueParser<Value = Order> {
+    let values =
+        Order::ALL.iter().map(|order| PossibleValue::new(order.name()).help(order_text(order.name())));
+    PossibleValuesParser::new(values)
+        .try_map(|name| Order::from_name(&name).ok_or("not an order of this release"))
+}
+
+fn encoding_text(name: &str) -> &'static str {
+    match name {
+        "packed-oct24" => "24-bit octahedral direction and shared-exponent colour for each hemisphere",
+        "packed-xyz24" => "the same with 8 bits a coordinate of the direction, as Web3D 2008 has it",
+        "pair-f16" => "direction and colour of each hemisphere as half-precision floats",
+        "pair-f16x4" => "the same in fours, as GPUs take them",
+        "pair-f32" => "direction and colour of each hemisphere as f32",
+        "vectors-f32" => "all six irradiance vectors of each colour as f32, nothing is lost",
+        "sh2-28" => "spherical harmonics of the radiance, the most accurate for its size",
+        _ => "see spec/ivg.md",
+    }
+}
+
+fn order_text(name: &str) -> &'static str {
+    match name {
+        "slices" => "some vertices of every slice across the longest axis, in pseudo-random order",
+        "octree" => "evenly spread over the volume, whatever part has arrived",
+        "explicit" => "what matters most first, found by measuring; each bundle lists its vertices",
+        _ => "see spec/ivg.md",
+    }
+}

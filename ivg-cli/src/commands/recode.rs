@@ -1,0 +1,168 @@
+use std::path::Path;
+use std::process::ExitCode;
+
+use ivg_format::{EncodeOptions, Event, Header, Limits, Quantity, decode_all};
+use ivg_grid::{IrradianceGrid, harmonics};
+use serde_json::{Value, json};
+
+use crate::args::RecodeArguments;
+use crate::failure::Failure;
+use crate::kind::FileKind;
+use crate::loss::{Loss, Stored};
+use crate::writing::{self, Extras};
+use crate::{files, table};
+
+pub(crate) fn run(arguments: &RecodeArguments) -> Result<ExitCode, Failure> {
+    files::require_extension(&arguments.out, &["ivg"])?;
+    let path = &arguments.file;
+    let bytes = files::read(path)?;
+    if FileKind::of(path, &bytes) == FileKind::Mesh {
+        return Err(Failure::usage(format_args!("{}: recode is for .ivg files", path.display())));
+    }
+    let (grid, header) = read(path, &bytes)?;
+    let options = EncodeOptions {
+        encoding: arguments.encoding.unwrap_or(header.encoding),
+        order: arguments.order.unwrap_or(header.order),
+        vertices_per_slice: arguments.per_slice.unwrap_or(header.vertices_per_slice),
+        seed: arguments.seed.unwrap_or(header.seed),
+        units: header.units,
+    };
+    let converted = converted(path, &grid, &header, &options)?;
+    let source_grid = converted.as_ref().unwrap_or(&grid);
+    let mut source = source_grid.as_source();
+    if header.validity_records > 0 {
+        // The section stays, even if it says nothing.
+        source.validity = Some(source_grid.validity());
+        source.blocked_edges = Some(source_grid.blocked_edges());
+    }
+    let file = writing::encode(source, &extras(path, &bytes)?, &options)?;
+
+    let (after, written) = read(&arguments.out, &file)?;
+    let before = Stored { grid: &grid, encoding: header.encoding };
+    let after = Stored { grid: &after, encoding: written.encoding };
+    let loss = Loss::measure(before, source_grid, after);
+    files::write(&arguments.out, &file)?;
+    report(arguments, (&header, bytes.len()), (&written, file.len()), &loss, converted.is_some());
+    Ok(ExitCode::SUCCESS)
+}
+
+fn read(path: &Path, bytes: &[u8]) -> Result<(IrradianceGrid, Header), Failure> {
+    IrradianceGrid::from_file(bytes, &Limits::default()).map_err(|error| Failure::file(path, error))
+}
+
+/// The grid in the quantity that the encoding stores, where that is another one than the file's.
+fn converted(
+    path: &Path,
+    grid: &IrradianceGrid,
+    header: &Header,
+    options: &EncodeOptions,
+) -> Result<Option<IrradianceGrid>, Failure> {
+    match (grid.quantity(), options.encoding.quantity()) {
+        (Quantity::Vectors, Quantity::Radiance) => {
+            let (from, to) = (header.encoding.name(), options.encoding.name());
+            Err(Failure::file(
+                path,
+                format_args!(
+                    "{from} stores irradiance vectors, which do not hold the coefficients of {to}; bake the scene again with ivg bake --encoding {to}"
+                ),
+            ))
+        }
+        (Quantity::Radiance, Quantity::Vectors) => {
+            let vectors: Vec<_> = grid.radiance().iter().map(harmonics::hemisphere_vectors).collect();
+            let (validity, edges) = (grid.validity().to_vec(), grid.blocked_edges().to_vec());
+            let converted = IrradianceGrid::from_parts(*grid.lattice(), vectors, validity, edges);
+            converted.map(Some).map_err(|error| Failure::file(path, error))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// Lights and metadata of the file. Chunks that this release does not know may refer to what changes; they are left out.
+fn extras(path: &Path, bytes: &[u8]) -> Result<Extras, Failure> {
+    let mut extras = Extras::default();
+    let mut broken = None;
+    let mut take = |chunk: &ivg_format::Chunk<'_>| -> Result<(), ivg_format::Error> {
+        if chunk.kind == ivg_format::LIGHTS {
+            let lights = ivg_format::lights(chunk)?;
+            extras.lights.extend(lights.map(|light| (light.name.to_owned(), light.direct_included)));
+        } else if chunk.kind == ivg_format::METADATA {
+            let pairs = ivg_format::metadata(chunk)?;
+            extras.metadata.extend(pairs.map(|(key, value)| (key.to_owned(), value.to_owned())));
+        } else {
+            eprintln!("ivg: warning: {}: chunk {} is not known and left out", path.display(), chunk.kind);
+        }
+        Ok(())
+    };
+    decode_all(bytes, &Limits::default(), |event| {
+        if let Event::Chunk(chunk) = event {
+            broken = broken.or(take(&chunk).err());
+        }
+    })
+    .map_err(|error| Failure::file(path, error))?;
+    broken.map_or(Ok(extras), |error| Err(Failure::file(path, error)))
+}
+
+fn report(
+    arguments: &RecodeArguments,
+    from: (&Header, usize),
+    to: (&Header, usize),
+    loss: &Loss,
+    converted: bool,
+) {
+    let lossy = converted || !loss.is_none();
+    if arguments.json {
+        let mut report = described(to);
+        report["file"] = json!(arguments.out);
+        report["vertices"] = to.0.lattice.vertex_count().into();
+        report["from"] = described(from);
+        report["lossy"] = lossy.into();
+        report["quantity_changed"] = converted.into();
+        report["values_relative_rmse"] = loss.values.into();
+        report["irradiance_relative_rmse"] = loss.irradiance.into();
+        files::print(&format!("{report}\n"));
+    } else {
+        files::print(&format!(
+            "{}: {} vertices, {} (from {})\n",
+            arguments.out.display(),
+            to.0.lattice.vertex_count(),
+            phrase(to),
+            phrase(from)
+        ));
+    }
+    if lossy {
+        let cannot = if converted {
+            format!(
+                "{} cannot be had back from {}; ",
+                from.0.encoding.quantity().name(),
+                to.0.encoding.quantity().name()
+            )
+        } else {
+            String::new()
+        };
+        eprintln!(
+            "ivg: lossy: {cannot}numbers are rounded by {:.2} %, irradiance differs by {:.2} % (relative RMSE)",
+            100.0 * loss.values,
+            100.0 * loss.irradiance,
+        );
+    }
+}
+
+fn described((header, bytes): (&Header, usize)) -> Value {
+    json!({
+        "bytes": bytes,
+        "encoding": header.encoding.name(),
+        "order": header.order.name(),
+        "vertices_per_slice": header.vertices_per_slice,
+        "seed": header.seed,
+    })
+}
+
+fn phrase((header, bytes): (&Header, usize)) -> String {
+    format!(
+        "{} in the order {}, {} a slice, {}",
+        header.encoding.name(),
+        header.order.name(),
+        header.vertices_per_slice,
+        table::bytes(bytes as u64)
+    )
+}
