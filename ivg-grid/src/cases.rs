@@ -145,8 +145,8 @@ fn excess(received: impl Fn(&Lattice, u64) -> bool) -> Outcome {
         grid.set(index as usize, &[[[value; 3]; 3]; 6]);
     }
     let mut measured = 0.0_f32;
-    for smooth in [false, true] {
-        for vectors in fill(&grid, &FillOptions { smooth }).vectors() {
+    for options in [FillOptions::BEST, FillOptions::PAPER] {
+        for vectors in fill(&grid, &options).vectors() {
             let value = vectors[0][0][0];
             measured = measured.max(low - value).max(value - high);
         }

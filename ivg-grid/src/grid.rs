@@ -304,26 +304,15 @@ impl IrradianceGrid {
             && (self.filled || self.received.count == self.vertex_count())
     }
 
-    /// The same grid with other values, every vertex valued.
-    pub(crate) fn filled_with(&self, values: impl Into<GridValues>) -> Self {
-        let values = values.into();
-        debug_assert_eq!(values.len(), self.vertex_count());
-        Self {
-            lattice: self.lattice,
-            values,
-            received: self.received.clone(),
-            validity: self.validity.clone(),
-            blocked_edges: self.blocked_edges.clone(),
-            invalid_count: self.invalid_count,
-            blocked_count: self.blocked_count,
-            filled: true,
-            accepted: self.accepted.clone(),
-        }
-    }
-
     /// Whether a record is older than the one of the same id that was accepted before; if not, it is accepted from now on.
     pub(crate) fn is_stale(&mut self, file: ContentId, id: RecordId, generation: u32) -> bool {
         self.accepted.0.admit(file, id, generation) == Arrival::Stale
+    }
+
+    /// The numbers of all vertices, for whoever gives every vertex a value.
+    pub(crate) fn fill_numbers(&mut self) -> &mut [f32] {
+        self.filled = true;
+        self.values.numbers_mut()
     }
 }
 

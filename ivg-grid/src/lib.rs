@@ -48,6 +48,7 @@ mod assemble;
 pub mod cases;
 mod error;
 mod fill;
+mod filled;
 mod grid;
 pub mod harmonics;
 pub mod integrate;
@@ -60,7 +61,8 @@ pub mod texture;
 mod values;
 
 pub use error::GridError;
-pub use fill::{FillOptions, fill};
+pub use fill::{FillOptions, Smoothing, fill};
+pub use filled::FilledGrid;
 pub use grid::{BLOCKED_BITS, DEFAULT_MAX_VERTICES, IrradianceGrid, VALIDITY_FREE};
 pub use ivg_format::{HemisphereVectors, Quantity, RadianceHarmonics, Values, VertexValues};
 pub use lookup::SURFACE_BIAS;

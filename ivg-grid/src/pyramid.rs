@@ -13,7 +13,13 @@
 //!
 //! Only the lattice, validity and blocked edges matter here, never which vertices were received.
 
+use ivg_format::Lattice;
+
 use crate::IrradianceGrid;
+
+mod lists;
+
+use lists::{DisjointSets, Lists};
 
 /// No node: a parent that does not exist.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -22,28 +28,33 @@ pub(crate) const NONE: u32 = u32::MAX;
 pub(crate) const DIRECTIONS: usize = 6;
 
 /// The levels, finest first.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Pyramid {
     pub(crate) levels: Vec<Level>,
 }
 
 /// The nodes of one level, in order of their cells and, in one cell, of their first child.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Level {
     dims: [u32; 3],
-    /// Linear index of the cell of each node, ascending. At level 0 the node's own number.
+    /// Which child of its block the cell of each node is: bits 0, 1, 2 for the second one along x, y, z.
+    octants: Vec<u8>,
+    /// Linear index of the cell of each node, ascending. Empty at level 0: there it is the node's own number.
     cells: Vec<u32>,
     /// Node of the next level, or [`NONE`] for a node without links.
     pub(crate) parents: Vec<u32>,
     children: Lists,
-    links: Lists,
+    links: Links,
 }
 
-/// Many short lists of nodes, one after the other.
-#[derive(Debug, Default)]
-struct Lists {
-    starts: Vec<u32>,
-    nodes: Vec<u32>,
+/// Which nodes of neighbouring cells light passes to.
+#[derive(Clone, Debug)]
+enum Links {
+    /// Level 0: one bit for each direction; the neighbour is as many vertices away as the direction's stride.
+    Open(Vec<u8>),
+    /// For each node and direction a list, and the node in it if that is the only one, the node itself if there is
+    /// none, or [`NONE`].
+    Lists { lists: Lists, single: Vec<[u32; DIRECTIONS]> },
 }
 
 impl Pyramid {
@@ -58,8 +69,8 @@ impl Pyramid {
     }
 
     /// The pyramid of a lattice that nothing obstructs.
-    pub(crate) fn unobstructed(grid: &IrradianceGrid) -> Self {
-        Self::new(grid.lattice().dims.map(u32::from), |_, _, _| true)
+    pub(crate) fn unobstructed(lattice: &Lattice) -> Self {
+        Self::new(lattice.dims.map(u32::from), |_, _, _| true)
     }
 
     fn new(dims: [u32; 3], open: impl Fn(usize, usize, usize) -> bool) -> Self {
@@ -76,60 +87,64 @@ impl Pyramid {
 
 impl Level {
     fn finest(dims: [u32; 3], open: impl Fn(usize, usize, usize) -> bool) -> Self {
-        let count = dims.iter().map(|&n| n as usize).product::<usize>();
-        let strides = [1, dims[0] as usize, dims[0] as usize * dims[1] as usize];
-        let mut links = Lists::default();
-        let mut level = Self {
-            dims,
-            cells: (0..count).map(narrow).collect(),
-            parents: vec![NONE; count],
-            children: Lists::default(),
-            links: Lists::default(),
-        };
-        for vertex in 0..count {
-            let at = level.coords(vertex);
-            for direction in 0..DIRECTIONS {
-                let (axis, stride) = (direction / 2, strides[direction / 2]);
-                links.begin();
-                let neighbour = if direction % 2 == 0 {
-                    (at[axis] > 0).then(|| (vertex - stride, vertex - stride, vertex))
-                } else {
-                    (at[axis] + 1 < dims[axis]).then(|| (vertex + stride, vertex, vertex + stride))
-                };
-                match neighbour {
-                    Some((node, low, high)) if open(low, high, axis) => links.nodes.push(narrow(node)),
-                    _ => {}
+        let [nx, ny, nz] = dims.map(|n| n as usize);
+        let count = nx * ny * nz;
+        let strides = [1, nx, nx * ny];
+        let (mut links, mut octants) = (vec![0u8; count], Vec::with_capacity(count));
+        let mut vertex = 0;
+        for z in 0..nz {
+            for y in 0..ny {
+                for x in 0..nx {
+                    octants.push((x & 1 | (y & 1) << 1 | (z & 1) << 2) as u8);
+                    for (axis, last) in [x + 1 == nx, y + 1 == ny, z + 1 == nz].into_iter().enumerate() {
+                        let next = vertex + strides[axis];
+                        if !last && open(vertex, next, axis) {
+                            links[vertex] |= 0b10 << (2 * axis);
+                            links[next] |= 0b01 << (2 * axis);
+                        }
+                    }
+                    vertex += 1;
                 }
             }
         }
-        links.begin();
-        level.links = links;
-        level
+        Self {
+            dims,
+            octants,
+            cells: Vec::new(),
+            parents: vec![NONE; count],
+            children: Lists::default(),
+            links: Links::Open(links),
+        }
     }
 
     /// The next level, or nothing when no node has a link left. Sets the parents of this one.
     fn coarser(&mut self) -> Option<Self> {
-        if self.links.nodes.is_empty() {
-            return None;
-        }
         let mut sets = DisjointSets::new(self.len());
+        let mut linked = Vec::with_capacity(self.len());
         for node in 0..self.len() {
-            let cell = self.coords(node);
+            let mut any = false;
             for direction in 0..DIRECTIONS {
-                // The second child of a block along an axis looks back at the first one.
-                if direction % 2 == 0 && cell[direction / 2] % 2 == 1 {
-                    self.links(node, direction).iter().for_each(|&other| sets.join(node, other as usize));
+                for other in self.links(node, direction) {
+                    any = true;
+                    // The second child of a block along an axis looks back at the first one.
+                    if direction % 2 == 0 && self.octants[node] >> (direction / 2) & 1 == 1 {
+                        sets.join(node, other as usize);
+                    }
                 }
             }
+            linked.push(any);
         }
 
         let dims = self.dims.map(|n| n.div_ceil(2));
         let block = |at: [u32; 3]| at[0] / 2 + dims[0] * (at[1] / 2 + dims[1] * (at[2] / 2));
         // The root of a set is its first node, so roots in order of block and number are the nodes in order.
         let mut roots: Vec<(u32, u32)> = (0..self.len())
-            .filter(|&node| self.has_links(node) && sets.root(node) == node)
+            .filter(|&node| linked[node] && sets.root(node) == node)
             .map(|node| (block(self.coords(node)), narrow(node)))
             .collect();
+        if roots.is_empty() {
+            return None;
+        }
         roots.sort_unstable();
         let mut number = vec![NONE; self.len()];
         roots.iter().enumerate().for_each(|(new, &(_, root))| number[root as usize] = narrow(new));
@@ -138,31 +153,62 @@ impl Level {
         }
 
         let children = Lists::grouped(roots.len(), &self.parents);
-        let mut links = Lists::default();
+        let links = self.links_of_parents(&children);
+        let cells: Vec<u32> = roots.iter().map(|&(cell, _)| cell).collect();
+        let mut level = Self {
+            dims,
+            octants: Vec::with_capacity(cells.len()),
+            cells,
+            parents: vec![NONE; roots.len()],
+            children,
+            links,
+        };
+        for node in 0..roots.len() {
+            let at = level.coords(node);
+            level.octants.push((at[0] & 1 | (at[1] & 1) << 1 | (at[2] & 1) << 2) as u8);
+        }
+        Some(level)
+    }
+
+    /// The links between the nodes of the next level, which have these children.
+    fn links_of_parents(&self, children: &Lists) -> Links {
+        let mut lists = Lists::default();
+        let mut single = vec![[NONE; DIRECTIONS]; children.len()];
         let mut found = Vec::new();
-        for parent in 0..roots.len() {
-            for direction in 0..DIRECTIONS {
+        for (parent, single) in single.iter_mut().enumerate() {
+            for (direction, single) in single.iter_mut().enumerate() {
                 found.clear();
-                for &child in children.get(parent) {
-                    let neighbours = self.links(child as usize, direction).iter();
-                    found.extend(
-                        neighbours.map(|&n| self.parents[n as usize]).filter(|&n| n as usize != parent),
-                    );
+                // Only the children on this side of the block have neighbours outside it.
+                let side = |&&child: &&u32| {
+                    usize::from(self.octants[child as usize] >> (direction / 2) & 1) == direction % 2
+                        || self.dims[direction / 2] % 2 == 1
+                };
+                for &child in children.get(parent).iter().filter(side) {
+                    for other in self.links(child as usize, direction) {
+                        let other = self.parents[other as usize];
+                        if other as usize != parent && found.last() != Some(&other) {
+                            found.push(other);
+                        }
+                    }
                 }
-                found.sort_unstable();
-                found.dedup();
-                links.begin();
-                links.nodes.extend_from_slice(&found);
+                if found.len() > 1 {
+                    found.sort_unstable();
+                    found.dedup();
+                }
+                *single = match found[..] {
+                    [] => narrow(parent),
+                    [one] => one,
+                    _ => NONE,
+                };
+                lists.push(&found);
             }
         }
-        links.begin();
-        let cells = roots.iter().map(|&(cell, _)| cell).collect();
-        Some(Self { dims, cells, parents: vec![NONE; roots.len()], children, links })
+        Links::Lists { lists, single }
     }
 
     /// Number of nodes.
     pub(crate) fn len(&self) -> usize {
-        self.cells.len()
+        self.octants.len()
     }
 
     /// Nodes of the level below that make up a node, ascending.
@@ -171,74 +217,83 @@ impl Level {
     }
 
     /// Nodes of the neighbouring cell in a direction that light passes to, ascending.
-    pub(crate) fn links(&self, node: usize, direction: usize) -> &[u32] {
-        self.links.get(DIRECTIONS * node + direction)
+    #[inline]
+    pub(crate) fn links(&self, node: usize, direction: usize) -> impl ExactSizeIterator<Item = u32> + Clone {
+        let (single, list) = match &self.links {
+            Links::Lists { lists, .. } => (0, lists.get(DIRECTIONS * node + direction)),
+            Links::Open(bits) => (bits[node] >> direction & 1, [].as_slice()),
+        };
+        let stride = self.stride(direction / 2);
+        let neighbour =
+            if direction.is_multiple_of(2) { node.wrapping_sub(stride) } else { node.wrapping_add(stride) };
+        LinkIter { single: (single == 1).then(|| narrow(neighbour)), list: list.iter() }
     }
 
-    /// For each axis the direction from the middle of a node's block towards the node.
-    pub(crate) fn outward(&self, node: usize) -> [usize; 3] {
-        let at = self.coords(node);
-        std::array::from_fn(|axis| 2 * axis + (at[axis] % 2) as usize)
+    /// The neighbour of a node in each direction: the linked one, the node itself where there is none. Nothing if
+    /// there are several in any direction.
+    #[inline]
+    pub(crate) fn neighbours(&self, node: usize) -> Option<[usize; DIRECTIONS]> {
+        match &self.links {
+            Links::Open(bits) => {
+                let bits = bits[node];
+                let strides = [0, 1, 2].map(|axis| self.stride(axis));
+                let steps = |direction: usize| usize::from(bits >> direction & 1) * strides[direction / 2];
+                Some([
+                    node - steps(0),
+                    node + steps(1),
+                    node - steps(2),
+                    node + steps(3),
+                    node - steps(4),
+                    node + steps(5),
+                ])
+            }
+            Links::Lists { single, .. } => {
+                let single = &single[node];
+                (!single.contains(&NONE)).then(|| single.map(|node| node as usize))
+            }
+        }
     }
 
-    fn has_links(&self, node: usize) -> bool {
-        self.links.starts[DIRECTIONS * node] != self.links.starts[DIRECTIONS * (node + 1)]
+    /// The nodes of level 0 between two neighbours along an axis, plus one.
+    pub(crate) fn stride(&self, axis: usize) -> usize {
+        [1, self.dims[0] as usize, self.dims[0] as usize * self.dims[1] as usize][axis]
+    }
+
+    /// Which child of its block a node's cell is: bits 0, 1, 2 for the second one along x, y, z.
+    pub(crate) fn octant(&self, node: usize) -> usize {
+        usize::from(self.octants[node])
     }
 
     fn coords(&self, node: usize) -> [u32; 3] {
         let [nx, ny, _] = self.dims;
-        let cell = self.cells[node];
+        let cell = self.cells.get(node).copied().unwrap_or(narrow(node));
         [cell % nx, cell / nx % ny, cell / nx / ny]
     }
 }
 
-impl Lists {
-    /// Ends the list before and begins the next one; once more at the very end.
-    fn begin(&mut self) {
-        self.starts.push(narrow(self.nodes.len()));
+/// Either the one neighbour of a vertex or a list of nodes.
+#[derive(Clone)]
+struct LinkIter<'a> {
+    single: Option<u32>,
+    list: std::slice::Iter<'a, u32>,
+}
+
+impl Iterator for LinkIter<'_> {
+    type Item = u32;
+
+    #[inline]
+    fn next(&mut self) -> Option<u32> {
+        self.single.take().or_else(|| self.list.next().copied())
     }
 
-    /// One list for each of `count` parents, holding its nodes in ascending order.
-    fn grouped(count: usize, parents: &[u32]) -> Self {
-        let mut starts = vec![0u32; count + 1];
-        let with_parent = || parents.iter().enumerate().filter(|&(_, &parent)| parent != NONE);
-        with_parent().for_each(|(_, &parent)| starts[parent as usize + 1] += 1);
-        (0..count).for_each(|parent| starts[parent + 1] += starts[parent]);
-        let mut next = starts.clone();
-        let mut nodes = vec![0; starts[count] as usize];
-        for (node, &parent) in with_parent() {
-            nodes[next[parent as usize] as usize] = narrow(node);
-            next[parent as usize] += 1;
-        }
-        Self { starts, nodes }
-    }
-
-    fn get(&self, list: usize) -> &[u32] {
-        &self.nodes[self.starts[list] as usize..self.starts[list + 1] as usize]
+    #[inline]
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let len = usize::from(self.single.is_some()) + self.list.len();
+        (len, Some(len))
     }
 }
 
-/// Sets of nodes that are joined; the root of a set is its lowest node.
-struct DisjointSets(Vec<u32>);
-
-impl DisjointSets {
-    fn new(count: usize) -> Self {
-        Self((0..count).map(narrow).collect())
-    }
-
-    fn root(&self, mut node: usize) -> usize {
-        // Sets have at most the nodes of one block: the way to the root is short without compressing it.
-        while self.0[node] as usize != node {
-            node = self.0[node] as usize;
-        }
-        node
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = narrow(a.min(b));
-    }
-}
+impl ExactSizeIterator for LinkIter<'_> {}
 
 /// Node numbers fit: a grid has fewer than 2³² vertices.
 #[expect(clippy::cast_possible_truncation, reason = "a grid has at most u32::MAX vertices")]

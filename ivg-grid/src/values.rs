@@ -55,6 +55,14 @@ impl GridValues {
         }
     }
 
+    /// The same, to be changed.
+    pub(crate) fn numbers_mut(&mut self) -> &mut [f32] {
+        match self {
+            Self::Vectors(vectors) => vectors.as_flattened_mut().as_flattened_mut().as_flattened_mut(),
+            Self::Radiance(radiance) => radiance.as_flattened_mut().as_flattened_mut(),
+        }
+    }
+
     /// Puts the values of a vertex in place.
     ///
     /// # Panics

@@ -2,10 +2,21 @@ use ivg_format::Lattice;
 use quickcheck::{Arbitrary, Gen, TestResult};
 
 use super::*;
+use crate::HemisphereVectors;
 
-const BOTH: [FillOptions; 2] = [FillOptions { smooth: false }, FillOptions { smooth: true }];
+/// Every combination of options.
+pub(crate) const ALL: [FillOptions; 6] = {
+    let smoothing = [Smoothing::Nowhere, Smoothing::Finest, Smoothing::EveryLevel];
+    let mut all = [FillOptions::BEST; 6];
+    let mut n = 0;
+    while n < 6 {
+        all[n] = FillOptions { neighbours: n >= 3, smoothing: smoothing[n % 3] };
+        n += 1;
+    }
+    all
+};
 
-fn open_grid(dims: [u16; 3]) -> IrradianceGrid {
+pub(crate) fn open_grid(dims: [u16; 3]) -> IrradianceGrid {
     let max = dims.map(|n| if n > 1 { f64::from(n - 1) } else { 0.0 });
     IrradianceGrid::new(Lattice::new(dims, [0.0; 3], max).expect("a box")).expect("small")
 }
@@ -14,15 +25,15 @@ fn flat(vectors: &HemisphereVectors) -> &[f32] {
     vectors.as_flattened().as_flattened()
 }
 
-fn same_bits(a: &HemisphereVectors, b: &HemisphereVectors) -> bool {
+pub(crate) fn same_bits(a: &HemisphereVectors, b: &HemisphereVectors) -> bool {
     flat(a).iter().zip(flat(b)).all(|(a, b)| a.to_bits() == b.to_bits())
 }
 
 /// A small grid with random obstructions of which a random part was received, and what was sent.
 #[derive(Clone, Debug)]
-struct Partial {
-    grid: IrradianceGrid,
-    sent: Vec<(usize, HemisphereVectors)>,
+pub(crate) struct Partial {
+    pub(crate) grid: IrradianceGrid,
+    pub(crate) sent: Vec<(usize, HemisphereVectors)>,
 }
 
 impl Arbitrary for Partial {
@@ -56,6 +67,16 @@ impl Partial {
         self.sent.iter().for_each(|(index, vectors)| self.grid.set(*index, vectors));
     }
 
+    /// The same lattice and obstructions, nothing received.
+    pub(crate) fn empty(&self) -> IrradianceGrid {
+        let mut grid = open_grid(self.grid.lattice().dims);
+        for index in 0..grid.vertex_count() {
+            grid.set_validity(index, self.grid.validity()[index]);
+            grid.set_blocked_edges(index, self.grid.blocked_edges()[index]);
+        }
+        grid
+    }
+
     fn valid_sent(&self) -> impl Iterator<Item = &(usize, HemisphereVectors)> {
         self.sent.iter().filter(|(index, _)| self.grid.is_valid(*index))
     }
@@ -64,7 +85,7 @@ impl Partial {
 #[test]
 fn received_vectors_are_never_altered() {
     fn law(partial: Partial) -> bool {
-        BOTH.iter().all(|options| {
+        ALL.iter().all(|options| {
             let filled = fill(&partial.grid, options);
             filled.is_filled()
                 && filled.received_count() == partial.sent.len()
@@ -89,7 +110,7 @@ fn filled_values_lie_between_the_received_ones() {
             flat(vectors).iter().enumerate().all(|(c, value)| (low[c]..=high[c]).contains(value))
         };
         TestResult::from_bool(
-            BOTH.iter().all(|options| fill(&partial.grid, options).vectors().iter().all(inside)),
+            ALL.iter().all(|options| fill(&partial.grid, options).vectors().iter().all(inside)),
         )
     }
     quickcheck::quickcheck(law as fn(Partial) -> TestResult);
@@ -100,11 +121,7 @@ fn the_order_of_arrival_does_not_matter_bit_for_bit() {
     fn law(mut partial: Partial, seed: u64) -> bool {
         let before = partial.grid.clone();
         partial.sent.sort_by_key(|(index, _)| (*index as u64 + 1).wrapping_mul(seed | 1).rotate_left(31));
-        let mut other = open_grid(before.lattice().dims);
-        for index in 0..other.vertex_count() {
-            other.set_validity(index, before.validity()[index]);
-            other.set_blocked_edges(index, before.blocked_edges()[index]);
-        }
+        let mut other = partial.empty();
         // Fill on the way too: a picture shown half-way must not leave a trace.
         for (arrived, (index, vectors)) in partial.sent.iter().enumerate() {
             if arrived == partial.sent.len() / 2 {
@@ -112,7 +129,7 @@ fn the_order_of_arrival_does_not_matter_bit_for_bit() {
             }
             other.set(*index, vectors);
         }
-        BOTH.iter().all(|options| {
+        ALL.iter().all(|options| {
             let (a, b) = (fill(&before, options), fill(&other, options));
             a.vectors().iter().zip(b.vectors()).all(|(a, b)| same_bits(a, b))
         })
@@ -123,7 +140,7 @@ fn the_order_of_arrival_does_not_matter_bit_for_bit() {
 #[test]
 fn filling_twice_is_filling_once() {
     fn law(partial: Partial) -> bool {
-        BOTH.iter().all(|options| {
+        ALL.iter().all(|options| {
             let once = fill(&partial.grid, options);
             let twice = fill(&once, options);
             once.vectors().iter().zip(twice.vectors()).all(|(a, b)| same_bits(a, b))
@@ -134,7 +151,7 @@ fn filling_twice_is_filling_once() {
 
 #[test]
 fn nothing_received_is_darkness() {
-    for options in &BOTH {
+    for options in &ALL {
         let filled = fill(&open_grid([4, 3, 5]), options);
         assert!(filled.vectors().iter().all(|vectors| *vectors == [[[0.0; 3]; 3]; 6]));
     }
@@ -142,7 +159,7 @@ fn nothing_received_is_darkness() {
     let mut grid = open_grid([4, 3, 5]);
     grid.set(7, &[[[9.0; 3]; 3]; 6]);
     grid.set_validity(7, 0);
-    assert!(fill(&grid, &BOTH[0]).vectors().iter().all(|vectors| *vectors == [[[0.0; 3]; 3]; 6]));
+    assert!(fill(&grid, &ALL[0]).vectors().iter().all(|vectors| *vectors == [[[0.0; 3]; 3]; 6]));
     assert_eq!(
         grid.get(7),
         Some(crate::VertexValues::Vectors([[[9.0; 3]; 3]; 6])),
@@ -152,14 +169,21 @@ fn nothing_received_is_darkness() {
 
 #[test]
 fn pushed_values_of_a_row_are_computed_by_hand() {
-    // Four vertices in a row, the ends received: 0 and 16. Pull: 0, 16. Push: 0 + 16/4 and 16 - 16/4. The smoothing
-    // then takes (6 × 4 + 0 + 12) / 8 = 4.5 and its mirror image.
-    let mut grid = open_grid([4, 1, 1]);
+    // Six vertices in a row, the ends received: 0 and 64. Pull: 0, none, 64; above that 0, 64.
+    let mut grid = open_grid([6, 1, 1]);
     grid.set(0, &[[[0.0; 3]; 3]; 6]);
-    grid.set(3, &[[[16.0; 3]; 3]; 6]);
-    let row = |options| fill(&grid, options).vectors().iter().map(|v| v[0][0][0]).collect::<Vec<_>>();
-    assert_eq!(row(&BOTH[0]), [0.0, 4.0, 12.0, 16.0]);
-    assert_eq!(row(&BOTH[1]), [0.0, 4.5, 11.5, 16.0]);
+    grid.set(5, &[[[64.0; 3]; 3]; 6]);
+    let row = |neighbours, smoothing| {
+        let filled = fill(&grid, &FillOptions { neighbours, smoothing });
+        filled.vectors().iter().map(|v| v[0][0][0]).collect::<Vec<_>>()
+    };
+    // Along y and z there are no neighbours: the parent's share is 3/4. The node that is missing gets 3/4 0 + 1/4 64 = 16,
+    // the vertices that are missing lie between 0, 16 and 64.
+    assert_eq!(row(false, Smoothing::Nowhere), [0.0, 4.0, 12.0, 28.0, 52.0, 64.0]);
+    // The node that is missing gets the mean of its neighbours, 32; a vertex next to a received one takes its value.
+    assert_eq!(row(true, Smoothing::Nowhere), [0.0, 0.0, 24.0, 40.0, 64.0, 64.0]);
+    // A quarter is the value's own; of the six neighbours four are missing and replaced by it: (6 a + b + c) / 8.
+    assert_eq!(row(true, Smoothing::Finest), [0.0, 3.0, 23.0, 41.0, 61.0, 64.0]);
 }
 
 /// The vertices with x below `wall` are one room, the others another; edges across are blocked. Each room gets one
@@ -182,7 +206,7 @@ fn two_rooms(dims: [u16; 3], wall: u16) -> IrradianceGrid {
 fn rooms_with_a_wall_thinner_than_a_cell_between_them_do_not_mix_at_all() {
     for wall in [1, 4, 5, 7] {
         let grid = two_rooms([8, 5, 6], wall);
-        for options in &BOTH {
+        for options in &ALL {
             let filled = fill(&grid, options);
             for (index, vectors) in filled.vectors().iter().enumerate() {
                 let light = if grid.lattice().coords(index as u64)[0] < wall { 1.0 } else { 0.0 };
@@ -194,7 +218,7 @@ fn rooms_with_a_wall_thinner_than_a_cell_between_them_do_not_mix_at_all() {
     let mut open = two_rooms([8, 5, 6], 4);
     (0..open.vertex_count()).for_each(|index| open.set_blocked_edges(index, 0));
     let mixed = |v: &HemisphereVectors| v[0][0][0] > 0.01 && v[0][0][0] < 0.99;
-    assert!(fill(&open, &BOTH[0]).vectors().iter().any(mixed));
+    assert!(fill(&open, &ALL[0]).vectors().iter().any(mixed));
 }
 
 #[test]
@@ -202,7 +226,7 @@ fn a_door_lets_light_through() {
     let mut grid = two_rooms([8, 5, 6], 4);
     let door = grid.lattice().index(3, 2, 2) as usize;
     grid.set_blocked_edges(door, 0);
-    let filled = fill(&grid, &BOTH[1]);
+    let filled = fill(&grid, &FillOptions::BEST);
     assert!(filled.vectors().iter().any(|v| v[0][0][0] > 0.0 && v[0][0][0] < 1.0));
 }
 
@@ -216,12 +240,12 @@ fn a_room_of_which_nothing_arrived_is_filled_from_outside_last() {
             partial.set(index, &grid.vectors()[index]);
         }
     }
-    assert!(fill(&partial, &BOTH[1]).vectors().iter().all(|v| *v == [[[1.0; 3]; 3]; 6]));
+    assert!(fill(&partial, &FillOptions::BEST).vectors().iter().all(|v| *v == [[[1.0; 3]; 3]; 6]));
     // The first vertex that arrives ends the guess for its whole room.
     let first = grid.lattice().index(6, 2, 2) as usize;
     grid = partial;
     grid.set(first, &[[[0.0; 3]; 3]; 6]);
-    let filled = fill(&grid, &BOTH[1]);
+    let filled = fill(&grid, &FillOptions::BEST);
     assert_eq!(filled.vectors()[grid.lattice().index(4, 0, 0) as usize], [[[0.0; 3]; 3]; 6]);
 }
 
@@ -233,7 +257,67 @@ fn invalid_vertices_count_for_nothing_but_get_values() {
     }
     grid.set(13, &[[[500.0; 3]; 3]; 6]);
     grid.set_validity(13, 0);
-    for options in &BOTH {
+    for options in &ALL {
         assert!(fill(&grid, options).vectors().iter().all(|v| *v == [[[2.0; 3]; 3]; 6]));
     }
+}
+
+#[test]
+fn numbers_as_large_as_they_come_do_not_overflow() {
+    // Sums and differences of these overflow; the means do not (IVG-FILL-02).
+    for [a, b] in [[f32::MAX; 2], [f32::MAX, f32::MIN], [f32::MIN, -1.0], [f32::MAX, f32::MIN_POSITIVE]] {
+        let mut grid = open_grid([7, 6, 5]);
+        for index in (0..grid.vertex_count()).step_by(7) {
+            grid.set(index, &[[[if index % 2 == 0 { a } else { b }; 3]; 3]; 6]);
+        }
+        for options in &ALL {
+            let filled = fill(&grid, options);
+            assert!(
+                filled
+                    .vectors()
+                    .iter()
+                    .all(|v| (b..=a).contains(&v[0][0][0]) || (a..=b).contains(&v[5][2][2]))
+            );
+        }
+    }
+}
+
+#[test]
+fn the_smallest_numbers_stay_in_range() {
+    // Below the normal numbers halves are rounded.
+    let mut grid = open_grid([7, 6, 5]);
+    (0..grid.vertex_count()).step_by(5).for_each(|index| grid.set(index, &[[[f32::from_bits(3); 3]; 3]; 6]));
+    for options in &ALL {
+        assert!(fill(&grid, options).vectors().iter().all(|v| *v == [[[f32::from_bits(3); 3]; 3]; 6]));
+    }
+}
+
+#[test]
+fn with_only_the_corners_received_all_others_lie_between_them() {
+    let mut grid = open_grid([9, 8, 7]);
+    for (n, corner) in grid.clone().lattice().corners().enumerate() {
+        grid.set(corner as usize, &[[[n as f32; 3]; 3]; 6]);
+    }
+    for options in &ALL {
+        let filled = fill(&grid, options);
+        let value = |x, y, z| filled.vectors()[grid.lattice().index(x, y, z) as usize][0][0][0];
+        assert!(filled.vectors().iter().all(|v| (0.0..=7.0).contains(&v[0][0][0])));
+        // Corner n lies at the far end of x, y, z for bits 0, 1, 2 of n: light grows along each axis.
+        assert!(
+            value(2, 4, 3) < value(6, 4, 3)
+                && value(4, 2, 3) < value(4, 6, 3)
+                && value(4, 4, 1) < value(4, 4, 5)
+        );
+    }
+}
+
+#[test]
+fn a_missing_vertex_is_the_mean_of_its_six_neighbours() {
+    let mut grid = open_grid([3; 3]);
+    for index in (0..27).filter(|&index| index != 13) {
+        grid.set(index, &[[[index as f32; 3]; 3]; 6]);
+    }
+    // Of a linear field that mean is the value itself, and smoothing keeps it. At most eight roundings of half an epsilon.
+    let filled = fill(&grid, &FillOptions::BEST).vectors()[13][0][0][0];
+    assert!((filled - 13.0).abs() < 13.0 * 8.0 * f32::EPSILON, "{filled}");
 }

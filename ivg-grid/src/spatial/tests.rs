@@ -272,7 +272,7 @@ fn only_where_all_corners_are_invalid_the_filled_value_answers() {
     for index in (0..16).filter(|index| index % 4 < 2) {
         grid.set_validity(index, 0);
     }
-    let filled = fill(&grid, &FillOptions { smooth: false });
+    let filled = fill(&grid, &FillOptions::default());
     // Between the invalid planes: the filled values, which come from the valid vertices 2 and 3.
     let inside = lookup(&filled, at(0.5, 0.5, 0.5), None, SpatialFilter::Trilinear);
     assert!((2.0..=3.0).contains(&inside), "{inside}");
