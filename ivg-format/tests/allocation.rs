@@ -3,8 +3,8 @@
 //! One test, because the counting allocator counts for the whole process.
 
 use ivg_format::{
-    BufferedDecoder, Decoder, EncodeOptions, Encoding, GridSource, Lattice, Limits, Quantity, Step, Values,
-    Verdict, VertexValues, decode_all, encode,
+    BufferedDecoder, Decoder, EncodeOptions, Encoding, GridSource, Lattice, Limits, Order, Quantity, Step,
+    Values, Verdict, VertexValues, decode_all, encode,
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -44,7 +44,30 @@ fn readers_hold_no_more_than_the_bytes_they_were_given() {
     the_counter_counts();
     reading_resident_bytes_allocates_nothing();
     a_declared_giant_allocates_nothing();
-    pieces_stay_within_the_bound();
+    pieces_stay_within_the_bound(&file([12, 9, 8], Encoding::VectorsF32));
+    let (listed, bundles) = with_directory();
+    a_directory_is_held_in_twice_its_bytes(&listed, bundles);
+    pieces_stay_within_the_bound(&listed);
+}
+
+/// A file of the order explicit with as many bundles as there can be: one vertex in each.
+fn with_directory() -> (Vec<u8>, usize) {
+    let lattice = Lattice::new([20, 20, 20], [0.0; 3], [1.0; 3]).unwrap();
+    let radiance = vec![[[1.0; 9]; 3]; 8000];
+    let bundles: Vec<Vec<u64>> = (0..8000).filter(|&v| !lattice.is_corner(v)).map(|v| vec![v]).collect();
+    let source = GridSource { bundles: Some(&bundles), ..GridSource::new(lattice, &radiance) };
+    let options = EncodeOptions { encoding: Encoding::Sh2, order: Order::Explicit, ..EncodeOptions::new() };
+    (encode(&source, &options).unwrap(), bundles.len())
+}
+
+/// 16 bytes a bundle, and the two counters of shared ownership (IVG-LIM-03).
+fn a_directory_is_held_in_twice_its_bytes(file: &[u8], bundles: usize) {
+    let (bytes, result) = allocated(|| decode_all(file, &Limits::default(), |_| {}));
+    assert_eq!(result, Ok(()));
+    assert!((16 * bundles..=16 * bundles + 16).contains(&bytes), "{bytes} bytes for {bundles} bundles");
+    // Cut off inside the directory, nothing is held of it yet.
+    let (bytes, result) = allocated(|| decode_all(&file[..144 + 8 * bundles], &Limits::default(), |_| {}));
+    assert_eq!((bytes, result.map_err(|error| error.verdict())), (0, Err(Verdict::NeedMore)));
 }
 
 /// Otherwise everything below would pass in silence.
@@ -113,8 +136,7 @@ fn a_declared_giant_allocates_nothing() {
     assert_eq!((bytes, verdict), (0, Err(Verdict::Invalid)));
 }
 
-fn pieces_stay_within_the_bound() {
-    let file = file([12, 9, 8], Encoding::VectorsF32);
+fn pieces_stay_within_the_bound(file: &[u8]) {
     for piece in [1, 7, 100, 4096, 100_000] {
         let mut decoder = BufferedDecoder::new(Limits::default());
         let held = Region::new(COUNTED);
