@@ -78,6 +78,16 @@ pub enum RenderError {
         /// How many.
         missing: usize,
     },
+    /// The options ask for a reconstruction that cannot be evaluated from what the grid holds.
+    #[error(
+        "the grid holds {holds}, from which {reconstruction} cannot be evaluated: use Reconstruction::for_encoding"
+    )]
+    Reconstruction {
+        /// Name of the reconstruction asked for.
+        reconstruction: &'static str,
+        /// Name of what the grid holds.
+        holds: &'static str,
+    },
     /// More triangles or vertices than 32-bit indices can name.
     #[error("the scene has {count} {what}: at most {limit} can be rendered")]
     TooMany {

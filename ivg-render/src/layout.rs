@@ -40,6 +40,20 @@ pub const RECONSTRUCT_N_SQUARED: u32 = 0;
 pub const RECONSTRUCT_THREE_VECTOR: u32 = 1;
 /// [`FrameRecord::reconstruction`]: six vectors.
 pub const RECONSTRUCT_SIX_VECTOR: u32 = 2;
+/// [`FrameRecord::reconstruction`]: radiance harmonics.
+pub const RECONSTRUCT_HARMONICS: u32 = 3;
+
+/// What radiance harmonics of degree 0 count in the irradiance: the norm of the basis √(1/4π) times π
+/// ([`ivg_grid::harmonics`]; Ramamoorthi and Hanrahan 2001, equation 12).
+pub const HARMONIC_CONSTANT: f32 = 0.886_226_9;
+/// The same for degree 1, beside a component of the normal: √(3/4π) times 2π/3.
+pub const HARMONIC_LINEAR: f32 = 1.023_326_7;
+/// The same for orders −2, −1 and 1 of degree 2, beside a product of two components: √(15/4π) times π/4.
+pub const HARMONIC_MIXED: f32 = 0.858_085_5;
+/// The same for order 0 of degree 2, beside 3 z² − 1: √(5/16π) times π/4.
+pub const HARMONIC_ZONAL: f32 = 0.247_707_95;
+/// The same for order 2 of degree 2, beside x² − y²: √(15/16π) times π/4.
+pub const HARMONIC_SQUARE: f32 = 0.429_042_76;
 
 /// A light as the shaders read it; positions and directions in scene space.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
@@ -97,8 +111,8 @@ pub struct FrameRecord {
     pub reconstruction: u32,
     /// Distance by which lookups are moved along the normal \[m\].
     pub normal_bias: f32,
-    /// What the half-precision vectors must be multiplied by \[W/m²\].
-    pub vector_scale: f32,
+    /// What the half-precision values of the grid must be multiplied by \[W/m² or W/(m² sr)\].
+    pub value_scale: f32,
     /// 0 = trilinear, 1 = tricubic.
     pub filter_kind: u32,
     /// Makes the size a multiple of 16 bytes, as WGSL has it.

@@ -10,8 +10,8 @@
 //!
 //! A surface of diffuse albedo ρ sends `emission + ρ/π (E_direct + E_indirect)` to the eye. Direct irradiance is a sum
 //! over lights, each tested against its shadow map; [`lights`] tells how emissive surfaces become lights. Indirect
-//! irradiance is looked up in the grid of irradiance vectors. Surfaces are opaque and reflect on both sides, as the
-//! baker has them.
+//! irradiance is looked up in the grid, which holds irradiance vectors or radiance harmonics. Surfaces are opaque and
+//! reflect on both sides, as the baker has them.
 //!
 //! Both renderers carry out the same [`plan`]; `cpu/` has one file for each shader, with the same functions in the same
 //! order of arguments. Their pictures agree within what `tests/gpu.rs` states and derives.

@@ -32,9 +32,10 @@ pub struct RenderOptions {
     pub area_samples: u32,
     /// Texels along the side of a shadow map, 32 to 4096. Memory grows with the square.
     pub shadow_size: u32,
-    /// How irradiance follows from the six irradiance vectors.
+    /// How irradiance follows from what the grid holds; it must [fit](Reconstruction::fits) that, and
+    /// [`Reconstruction::for_encoding`] is the most accurate one that does.
     pub reconstruction: Reconstruction,
-    /// How vectors are interpolated between the vertices of the grid.
+    /// How values are interpolated between the vertices of the grid.
     pub filter: SpatialFilter,
 }
 

@@ -7,8 +7,8 @@ use ivg_scene::Texture;
 use crate::geometry::Geometry;
 use crate::layout::{
     DIRECTIONAL_TILES, FaceRecord, FrameRecord, LIGHT_DIRECTIONAL, LightRecord, MaterialRecord,
-    RECONSTRUCT_N_SQUARED, RECONSTRUCT_SIX_VECTOR, RECONSTRUCT_THREE_VECTOR, SHADOW_BIAS, SHADOW_BORDER,
-    SHADOW_DEPTH_CAP,
+    RECONSTRUCT_HARMONICS, RECONSTRUCT_N_SQUARED, RECONSTRUCT_SIX_VECTOR, RECONSTRUCT_THREE_VECTOR,
+    SHADOW_BIAS, SHADOW_BORDER, SHADOW_DEPTH_CAP,
 };
 use crate::lights::light_records;
 use crate::{RenderError, RenderOptions, RenderScene, camera};
@@ -65,9 +65,9 @@ pub struct FramePlan<'scene> {
 pub struct GridLookup<'scene> {
     /// The grid, every vertex with a value.
     pub grid: &'scene IrradianceGrid,
-    /// How irradiance follows from the six vectors.
+    /// How irradiance follows from the values of a vertex; fits what the grid holds.
     pub reconstruction: Reconstruction,
-    /// How vectors are interpolated.
+    /// How values are interpolated.
     pub filter: SpatialFilter,
     /// World position of the origin of scene space \[m\].
     pub origin: glam::DVec3,
@@ -106,6 +106,12 @@ impl<'scene> FramePlan<'scene> {
                 two_sided: u32::from(material.two_sided),
             })
             .collect();
+        if let Some(grid) = scene.grid.as_ref().filter(|_| options.indirect)
+            && !options.reconstruction.fits(grid.quantity())
+        {
+            let (reconstruction, holds) = (options.reconstruction.name(), grid.quantity().name());
+            return Err(RenderError::Reconstruction { reconstruction, holds });
+        }
         let grid = scene.grid.as_ref().filter(|_| options.indirect).map(|grid| GridLookup {
             grid,
             reconstruction: options.reconstruction,
@@ -179,6 +185,7 @@ fn reconstruction_code(reconstruction: Reconstruction) -> u32 {
     match reconstruction {
         Reconstruction::NSquared => RECONSTRUCT_N_SQUARED,
         Reconstruction::SixVector => RECONSTRUCT_SIX_VECTOR,
+        Reconstruction::Harmonics => RECONSTRUCT_HARMONICS,
         _ => RECONSTRUCT_THREE_VECTOR,
     }
 }

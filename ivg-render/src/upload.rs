@@ -2,7 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use half::f16;
-use ivg_grid::{FLAG_USABLE, IrradianceGrid};
+use ivg_format::Quantity;
+use ivg_grid::{FLAG_USABLE, IrradianceGrid, texture_count};
 use ivg_scene::Texture;
 
 use crate::geometry::Geometry;
@@ -10,8 +11,15 @@ use crate::geometry::Geometry;
 /// Dynamic uniforms lie at multiples of this many bytes: WebGPU's default `minUniformBufferOffsetAlignment`.
 pub const UNIFORM_ALIGNMENT: usize = 256;
 
-/// Slabs stacked along z in each of the three textures of a grid: two hemispheres of three channels.
-pub const SLABS: usize = 6;
+/// Number of textures that a grid is put in.
+const TEXTURES: usize = 3;
+
+/// Slabs stacked along z in each of the three textures of a grid: for irradiance vectors two hemispheres of three
+/// channels, for radiance harmonics one group of coefficients of three channels.
+#[must_use]
+pub const fn slabs(quantity: Quantity) -> usize {
+    texture_count(quantity) / TEXTURES
+}
 
 /// Bit of [`grid_flags`]: the eight vertices of the cell that begins at the vertex are usable and none of its twelve
 /// edges is blocked.
@@ -72,23 +80,24 @@ pub fn rgba_texels(texture: &Texture) -> Vec<u8> {
     texture.texels.chunks_exact(3).flat_map(|texel| [texel[0], texel[1], texel[2], 255]).collect()
 }
 
-/// The three textures of a grid, for the hemispheres along x, y and z, and what their values must be multiplied by
-/// \[W/m²\].
+/// The three textures of a grid and what their values must be multiplied by \[W/m² or W/(m² sr)\].
 ///
-/// A texture has [`SLABS`] times as many slices as the lattice: slab `3 s + channel` holds the vectors of the positive
-/// (s = 0) or negative (s = 1) hemisphere. A texel is what
-/// [`IrradianceGrid::texture_layer`](ivg_grid::IrradianceGrid::texture_layer) gives: x, y, z times a weight, and the
-/// weight; x, y, z are divided by the scale.
+/// A texture has [`slabs`] times as many slices as the lattice. Of irradiance vectors, the textures are those of the
+/// hemispheres along x, y and z, and slab `3 s + channel` holds the vectors of the positive (s = 0) or negative (s = 1)
+/// one. Of radiance harmonics, they are those of coefficients 0 to 2, 3 to 5 and 6 to 8, and slab `channel` holds a
+/// channel's. A texel is what [`IrradianceGrid::texture_layer`](ivg_grid::IrradianceGrid::texture_layer) gives: three
+/// numbers times a weight, and the weight; the numbers are divided by the scale.
 #[must_use]
-pub fn grid_textures(grid: &IrradianceGrid) -> ([Vec<f16>; 3], f32) {
+pub fn grid_textures(grid: &IrradianceGrid) -> ([Vec<f16>; TEXTURES], f32) {
     let largest = grid.largest_component();
     // A power of two: dividing by it loses nothing.
     let exponent = if largest > 0.0 { (largest / LARGEST_HALF).log2().ceil() } else { 0.0 };
     let scale = exponent.clamp(-126.0, 127.0).exp2();
-    let textures = [0, 1, 2].map(|axis| {
-        let mut texels = Vec::with_capacity(4 * SLABS * grid.vertex_count());
-        for slab in 0..SLABS {
-            for [x, y, z, weight] in grid.texture_layer(axis * SLABS + slab) {
+    let slabs = slabs(grid.quantity());
+    let textures = [0, 1, 2].map(|texture| {
+        let mut texels = Vec::with_capacity(4 * slabs * grid.vertex_count());
+        for slab in 0..slabs {
+            for [x, y, z, weight] in grid.texture_layer(texture * slabs + slab) {
                 texels.extend([x / scale, y / scale, z / scale, weight].map(f16::from_f32));
             }
         }

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use ivg_format::Lattice;
-use ivg_grid::{IrradianceGrid, Reconstruction, SpatialFilter, integrate};
+use ivg_grid::{GridValues, IrradianceGrid, Reconstruction, SpatialFilter, integrate};
 use ivg_render::{Image, RenderOptions, RenderScene, compare, render_cpu};
 use ivg_scene::{Light, LightKind, Material};
 
@@ -130,18 +130,24 @@ fn a_light_shows_its_radiance_on_the_side_that_emits() {
 #[test]
 fn uniform_indirect_light_shows_albedo_times_radiance() {
     // White furnace: radiance L from everywhere gives E = pi L and a reflected radiance of albedo L, whatever the
-    // normal; three- and six-vector reconstruction are exact there.
+    // normal; all reconstructions but the papers' are exact there.
     let lattice = Lattice::new([3, 4, 5], [-3.0, -1.0, -3.0], [3.0, 4.0, 3.0]).unwrap();
     let radiance = DVec3::new(0.9, 0.6, 0.3);
     let directions = integrate::fibonacci_sphere(100_000);
     let vectors = integrate::hemisphere_vectors(&directions, |_| radiance);
+    let harmonics = integrate::radiance_harmonics(&directions, |_| radiance);
     let count = lattice.vertex_count() as usize;
-    let grid =
-        IrradianceGrid::from_parts(lattice, vec![vectors; count], vec![255; count], vec![0; count]).unwrap();
+    let grid = |values: GridValues| {
+        IrradianceGrid::from_parts(lattice, values, vec![255; count], vec![0; count]).unwrap()
+    };
     let mut scene = floor_scene();
     scene.meshes.push(scenes::sphere(Vec3::new(0.2, 0.3, 0.1), 0.4, 16, 0));
-    scene.grid = Some(grid);
-    for reconstruction in [Reconstruction::ThreeVector, Reconstruction::SixVector] {
+    for (reconstruction, values) in [
+        (Reconstruction::ThreeVector, GridValues::from(vec![vectors; count])),
+        (Reconstruction::SixVector, vec![vectors; count].into()),
+        (Reconstruction::Harmonics, vec![harmonics; count].into()),
+    ] {
+        scene.grid = Some(grid(values));
         for filter in SpatialFilter::ALL {
             let mut options = options(30, 20);
             (options.reconstruction, options.filter) = (reconstruction, filter);

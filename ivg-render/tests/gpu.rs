@@ -9,6 +9,10 @@
 //!   than a factor of two between them: 2^-10 of the indirect part. Hardware may interpolate them with 8-bit weights:
 //!   2^-9 of the difference of neighbouring vertices along each axis; together below 1 % of the indirect light in these
 //!   scenes.
+//! - Radiance harmonics are rounded to half precision too: 2^-11 of each of nine products. By the addition theorem and
+//!   the inequality of Cauchy and Schwarz, the products of light from one direction add up in magnitude to no more than the
+//!   irradiance of a surface that faces it; so the error is at most 2^-11 of what the brightest normal would get at that
+//!   place, a quarter of the second part of the bound.
 //! - Hardware converts sRGB texels within 0.5 / 255 of the display value, at most 0.9 % of a bright texel (IEC 61966-2-1
 //!   has slope 2.3 at white).
 //! - Which samples an edge covers may differ where an edge passes within 1/256 pixel of a sample, on the screen and in
@@ -21,8 +25,11 @@
 
 #![cfg(feature = "gpu")]
 
+use ivg_format::Quantity;
 use ivg_grid::{Reconstruction, SpatialFilter};
-use ivg_render::{GpuError, GpuRenderer, Image, RenderOptions, RenderScene, compare, render_cpu};
+use ivg_render::{
+    GpuError, GpuRenderer, Image, RenderError, RenderOptions, RenderScene, compare, render_cpu,
+};
 
 #[allow(dead_code, reason = "shared with the CPU tests and the example, which use other parts")]
 mod scenes;
@@ -124,6 +131,43 @@ fn indirect_light_of_a_grid_without_obstacles() {
         options.filter = filter;
         check(&scene, &options);
     }
+}
+
+#[test]
+fn indirect_light_of_radiance_harmonics_with_and_without_obstacles() {
+    let mut scene = scenes::cornell(false);
+    scene.grid = Some(scenes::cornell_grid(Quantity::Radiance));
+    let mut free = scene.clone();
+    let grid = free.grid.as_mut().unwrap();
+    for vertex in 0..grid.vertex_count() {
+        grid.set_validity(vertex, 255);
+        grid.set_blocked_edges(vertex, 0);
+    }
+    for filter in SpatialFilter::ALL {
+        let mut options = options();
+        options.direct = false;
+        (options.reconstruction, options.filter) = (Reconstruction::Harmonics, filter);
+        check(&scene, &options);
+        check(&free, &options);
+    }
+}
+
+#[test]
+fn a_reconstruction_that_does_not_fit_the_grid_is_an_error() {
+    let mut scene = scenes::cornell(true);
+    let mut options = options();
+    options.reconstruction = Reconstruction::Harmonics;
+    let refused = |scene: &RenderScene, options: &RenderOptions| {
+        let error = renderer().render(scene, options).unwrap_err();
+        assert!(matches!(error, GpuError::Render(RenderError::Reconstruction { .. })), "{error}");
+    };
+    refused(&scene, &options);
+    scene.grid = Some(scenes::cornell_grid(Quantity::Radiance));
+    options.reconstruction = Reconstruction::ThreeVector;
+    refused(&scene, &options);
+    // Without indirect light nothing is reconstructed.
+    options.indirect = false;
+    assert!(renderer().render(&scene, &options).is_ok());
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::gpu::pipelines::{COLOUR_FORMAT, DEPTH_FORMAT, Pipelines};
 use crate::layout::{FaceRecord, LightRecord, MaterialRecord};
 use crate::plan::FramePlan;
 use crate::upload::{
-    SLABS, UNIFORM_ALIGNMENT, aligned_uniforms, corner_records, grid_flags, grid_textures, rgba_texels,
+    UNIFORM_ALIGNMENT, aligned_uniforms, corner_records, grid_flags, grid_textures, rgba_texels, slabs,
 };
 
 /// Everything that a plan needs on the device.
@@ -140,16 +140,17 @@ impl Maker<'_> {
         shadow_maps: &wgpu::Texture,
     ) -> BindGroup {
         let mut record = plan.frame;
-        let mut dims = [1; 3];
         // Without a grid, textures of one texel that no lookup reads.
-        let mut textures = [0, 1, 2].map(|_| vec![half::f16::ZERO; 4 * SLABS]);
+        let (mut dims, mut depth) = ([1; 3], 1);
+        let mut textures = [0, 1, 2].map(|_| vec![half::f16::ZERO; 4]);
         let mut flags = vec![0];
         if let Some(lookup) = plan.grid {
             dims = lookup.grid.lattice().dims.map(u32::from);
-            (textures, record.vector_scale) = grid_textures(lookup.grid);
+            depth = dims[2] * slabs(lookup.grid.quantity()) as u32;
+            (textures, record.value_scale) = grid_textures(lookup.grid);
             flags = grid_flags(lookup.grid);
         }
-        let stacked = [dims[0], dims[1], dims[2] * SLABS as u32];
+        let stacked = [dims[0], dims[1], depth];
         let volume = wgpu::TextureDimension::D3;
         let [grid_x, grid_y, grid_z] = textures.map(|texels| {
             let bytes = bytemuck::cast_slice(&texels);
@@ -261,7 +262,7 @@ fn check_limits(limits: &wgpu::Limits, plan: &FramePlan<'_>) -> Result<(), GpuEr
     }
     if let Some(lookup) = plan.grid {
         let [x, y, z] = lookup.grid.lattice().dims.map(u64::from);
-        let deepest = x.max(y).max(z * SLABS as u64);
+        let deepest = x.max(y).max(z * slabs(lookup.grid.quantity()) as u64);
         within("texels along a side of the grid", deepest, u64::from(limits.max_texture_dimension_3d))?;
     }
     let buffers = [

@@ -62,7 +62,7 @@ fn structures_have_the_same_layout_on_both_sides() {
             lattice_dims,
             reconstruction,
             normal_bias,
-            vector_scale,
+            value_scale,
             filter_kind,
             padding,
         }),
@@ -91,6 +91,12 @@ fn constants_have_the_same_value_on_both_sides() {
         ("RECONSTRUCT_N_SQUARED", f64::from(RECONSTRUCT_N_SQUARED)),
         ("RECONSTRUCT_THREE_VECTOR", f64::from(RECONSTRUCT_THREE_VECTOR)),
         ("RECONSTRUCT_SIX_VECTOR", f64::from(RECONSTRUCT_SIX_VECTOR)),
+        ("RECONSTRUCT_HARMONICS", f64::from(RECONSTRUCT_HARMONICS)),
+        ("HARMONIC_CONSTANT", f64::from(HARMONIC_CONSTANT)),
+        ("HARMONIC_LINEAR", f64::from(HARMONIC_LINEAR)),
+        ("HARMONIC_MIXED", f64::from(HARMONIC_MIXED)),
+        ("HARMONIC_ZONAL", f64::from(HARMONIC_ZONAL)),
+        ("HARMONIC_SQUARE", f64::from(HARMONIC_SQUARE)),
         ("TANGENTIAL_SHARE", f64::from(TANGENTIAL_SHARE)),
         ("FLAG_USABLE", f64::from(FLAG_USABLE)),
         ("FLAG_CLEAR_CELL", f64::from(FLAG_CLEAR_CELL)),
@@ -114,4 +120,30 @@ fn constants_have_the_same_value_on_both_sides() {
     let mut expected: Vec<_> = expected.map(|(name, value)| (name.to_string(), value)).into();
     expected.sort_by(|a, b| a.0.cmp(&b.0));
     assert_eq!(found, expected);
+}
+
+#[test]
+fn harmonic_constants_are_the_basis_times_the_convolution_with_the_cosine() {
+    let n = glam::Vec3::new(0.48, -0.6, 0.64);
+    let glam::Vec3 { x, y, z } = n;
+    let weights = [
+        HARMONIC_CONSTANT,
+        HARMONIC_LINEAR * y,
+        HARMONIC_LINEAR * z,
+        HARMONIC_LINEAR * x,
+        HARMONIC_MIXED * x * y,
+        HARMONIC_MIXED * y * z,
+        HARMONIC_ZONAL * (3.0 * z * z - 1.0),
+        HARMONIC_MIXED * x * z,
+        HARMONIC_SQUARE * (x * x - y * y),
+    ];
+    for (coefficient, weight) in weights.into_iter().enumerate() {
+        let mut radiance = [[0.0; 9]; 3];
+        radiance[1][coefficient] = 1.0;
+        let irradiance = ivg_grid::harmonics::irradiance_signed(&radiance, n);
+        // Both are products of at most six numbers rounded to binary32.
+        let close = (irradiance.y - weight).abs() <= 12.0 * f32::EPSILON * weight.abs();
+        assert!(close, "coefficient {coefficient}: {} instead of {weight}", irradiance.y);
+        assert_eq!((irradiance.x, irradiance.z), (0.0, 0.0));
+    }
 }

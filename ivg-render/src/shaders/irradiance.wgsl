@@ -1,6 +1,9 @@
 // Indirect light from the grid: the rule of ivg-grid's module `spatial`, on half-precision textures.
 // Twin: cpu/irradiance.rs. Needs `frame`, `grid_x`, `grid_y`, `grid_z`, `grid_flags` and `grid_sampler` of shade.wgsl.
 //
+// A vertex holds, for each channel, parts of three numbers: six irradiance vectors, two in each of the textures, or three
+// groups of radiance coefficients, one in each. The irradiance of a surface is the sum of the parts times weights.
+//
 // Where a cell, or for tricubic lookups the block of 4 x 4 x 4 vertices, is clear of obstacles, the hardware filters.
 // Elsewhere every vertex is read and weighted by itself.
 
@@ -10,6 +13,12 @@ const FLAG_CLEAR_BLOCK: u32 = 32u;
 const RECONSTRUCT_N_SQUARED: u32 = 0u;
 const RECONSTRUCT_THREE_VECTOR: u32 = 1u;
 const RECONSTRUCT_SIX_VECTOR: u32 = 2u;
+const RECONSTRUCT_HARMONICS: u32 = 3u;
+const HARMONIC_CONSTANT: f32 = 0.8862269;
+const HARMONIC_LINEAR: f32 = 1.0233267;
+const HARMONIC_MIXED: f32 = 0.8580855;
+const HARMONIC_ZONAL: f32 = 0.24770795;
+const HARMONIC_SQUARE: f32 = 0.42904276;
 const TANGENTIAL_SHARE: f32 = 0.7;
 
 // Vertices that a careful lookup reads: sets of them are the bits of two words.
@@ -61,7 +70,7 @@ fn indirect_irradiance(position: vec3f, normal: vec3f, face_normal: vec3f) -> ve
             sum = careful_irradiance(from_origin, normal);
         }
     }
-    return max(sum * frame.vector_scale, vec3f(0.0));
+    return max(sum * frame.value_scale, vec3f(0.0));
 }
 
 // The uniform cubic B-spline's weights of the vertices -1, 0, 1, 2 along each axis.
@@ -91,44 +100,60 @@ fn cubic_irradiance(base: vec3f, last: vec3f, weights: mat4x3f, normal: vec3f) -
     return sum;
 }
 
-// Irradiance, not cut at zero, from vectors that the hardware interpolates at lattice coordinates `at`.
+// Parts of a vertex that lie in one texture.
+fn parts_in_texture() -> u32 {
+    return select(2u, 1u, frame.reconstruction == RECONSTRUCT_HARMONICS);
+}
+
+// What a part counts in the irradiance of a surface: all reconstructions are linear.
+fn part_weight(part: u32, n: vec3f) -> vec3f {
+    if frame.reconstruction == RECONSTRUCT_HARMONICS {
+        return group_weight(part, n);
+    }
+    return hemisphere_weight(part, n);
+}
+
+// Irradiance, not cut at zero, from values that the hardware interpolates at lattice coordinates `at`.
 fn filtered_irradiance(at: vec3f, normal: vec3f) -> vec3f {
     let dims = vec3f(frame.lattice_dims);
+    let each = parts_in_texture();
+    let size = dims * vec3f(1.0, 1.0, f32(3u * each));
     var sum = vec3f(0.0);
-    for (var hemisphere = 0u; hemisphere < 6u; hemisphere++) {
-        let weight = hemisphere_weight(hemisphere, normal);
+    for (var part = 0u; part < 3u * each; part++) {
+        let weight = part_weight(part, normal);
         if all(weight == vec3f(0.0)) {
             continue;
         }
         for (var channel = 0u; channel < 3u; channel++) {
-            let slab = f32((hemisphere & 1u) * 3u + channel);
+            let slab = f32((part % each) * 3u + channel);
             let texel = vec3f(at.xy, at.z + slab * dims.z) + 0.5;
-            let coordinates = texel / (dims * vec3f(1.0, 1.0, 6.0));
-            var vector = vec3f(0.0);
-            switch hemisphere >> 1u {
-                case 0u: { vector = textureSampleLevel(grid_x, grid_sampler, coordinates, 0.0).xyz; }
-                case 1u: { vector = textureSampleLevel(grid_y, grid_sampler, coordinates, 0.0).xyz; }
-                default: { vector = textureSampleLevel(grid_z, grid_sampler, coordinates, 0.0).xyz; }
+            let coordinates = texel / size;
+            var numbers = vec3f(0.0);
+            switch part / each {
+                case 0u: { numbers = textureSampleLevel(grid_x, grid_sampler, coordinates, 0.0).xyz; }
+                case 1u: { numbers = textureSampleLevel(grid_y, grid_sampler, coordinates, 0.0).xyz; }
+                default: { numbers = textureSampleLevel(grid_z, grid_sampler, coordinates, 0.0).xyz; }
             }
-            sum[channel] += dot(weight, vector);
+            sum[channel] += dot(weight, numbers);
         }
     }
     return sum;
 }
 
-// Irradiance, not cut at zero, from the vectors of one vertex.
+// Irradiance, not cut at zero, from the values of one vertex.
 fn vertex_irradiance(vertex: vec3i, normal: vec3f) -> vec3f {
+    let each = parts_in_texture();
     var sum = vec3f(0.0);
-    for (var hemisphere = 0u; hemisphere < 6u; hemisphere++) {
-        let weight = hemisphere_weight(hemisphere, normal);
+    for (var part = 0u; part < 3u * each; part++) {
+        let weight = part_weight(part, normal);
         if all(weight == vec3f(0.0)) {
             continue;
         }
         for (var channel = 0u; channel < 3u; channel++) {
-            let slab = i32((hemisphere & 1u) * 3u + channel);
+            let slab = i32((part % each) * 3u + channel);
             let texel = vertex + vec3i(0, 0, slab * i32(frame.lattice_dims.z));
             var stored = vec4f(0.0);
-            switch hemisphere >> 1u {
+            switch part / each {
                 case 0u: { stored = textureLoad(grid_x, texel, 0); }
                 case 1u: { stored = textureLoad(grid_y, texel, 0); }
                 default: { stored = textureLoad(grid_z, texel, 0); }
@@ -141,7 +166,27 @@ fn vertex_irradiance(vertex: vec3i, normal: vec3f) -> vec3f {
     return sum;
 }
 
-// What a hemisphere's irradiance vector counts in the irradiance of a surface: all three reconstructions are linear.
+// What three radiance coefficients of a group count, in the order (0,0) (1,-1) (1,0), (1,1) (2,-2) (2,-1), (2,0) (2,1)
+// (2,2): the basis convolved with the cosine.
+fn group_weight(group: u32, n: vec3f) -> vec3f {
+    switch group {
+        case 0u: {
+            return vec3f(HARMONIC_CONSTANT, HARMONIC_LINEAR * n.y, HARMONIC_LINEAR * n.z);
+        }
+        case 1u: {
+            return vec3f(HARMONIC_LINEAR * n.x, HARMONIC_MIXED * n.x * n.y, HARMONIC_MIXED * n.y * n.z);
+        }
+        default: {
+            return vec3f(
+                HARMONIC_ZONAL * (3.0 * n.z * n.z - 1.0),
+                HARMONIC_MIXED * n.x * n.z,
+                HARMONIC_SQUARE * (n.x * n.x - n.y * n.y),
+            );
+        }
+    }
+}
+
+// What a hemisphere's irradiance vector counts in the irradiance of a surface.
 fn hemisphere_weight(hemisphere: u32, n: vec3f) -> vec3f {
     let axis = hemisphere >> 1u;
     let negative = (hemisphere & 1u) == 1u;

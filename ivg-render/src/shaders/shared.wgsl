@@ -37,7 +37,7 @@ struct FrameRecord {
     lattice_dims: vec3u,
     reconstruction: u32,
     normal_bias: f32,
-    vector_scale: f32,
+    value_scale: f32,
     filter_kind: u32,
     padding: u32,
 }

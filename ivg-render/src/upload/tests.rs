@@ -41,6 +41,27 @@ fn textures_hold_every_vector_at_half_precision() {
 }
 
 #[test]
+fn textures_of_radiance_hold_three_coefficients_each() {
+    let lattice = Lattice::new([3, 2, 4], [0.0; 3], [1.0; 3]).unwrap();
+    let radiance: Vec<_> = (0..24)
+        .map(|vertex| {
+            [0, 1, 2]
+                .map(|channel| [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|c| (vertex * 27 + channel * 9 + c) as f32))
+        })
+        .collect();
+    let grid = IrradianceGrid::from_parts(lattice, radiance, vec![255; 24], vec![0; 24]).unwrap();
+    let (textures, factor) = grid_textures(&grid);
+    for (coefficient, channel, vertex) in [(0, 0, 0), (4, 2, 23), (8, 1, 7), (5, 0, 16)] {
+        let texel = 4 * (channel * 24 + vertex);
+        let found = textures[coefficient / 3][texel + coefficient % 3].to_f32() * factor;
+        // Whole numbers below 2^11 are exact at half precision.
+        assert_eq!(found, (vertex * 27 + channel * 9 + coefficient) as f32);
+        assert_eq!(textures[coefficient / 3][texel + 3].to_f32(), 1.0);
+    }
+    assert!(textures.iter().all(|texture| texture.len() == 4 * 3 * 24));
+}
+
+#[test]
 fn a_dark_grid_has_a_scale_too() {
     let (textures, factor) = grid_textures(&grid([2; 3], 0.0));
     assert_eq!(factor, 1.0);

@@ -1,7 +1,7 @@
 //! Small scenes made by code, for the tests and the example.
 
 use glam::{Affine3A, DVec3, Vec2, Vec3};
-use ivg_format::Lattice;
+use ivg_format::{Lattice, Quantity};
 use ivg_grid::{FillOptions, IrradianceGrid, fill, integrate};
 use ivg_render::{RenderMesh, RenderScene};
 use ivg_scene::{Camera, Light, LightKind, Material, Texture, TextureFormat};
@@ -134,7 +134,7 @@ pub(crate) fn cornell(with_grid: bool) -> RenderScene {
     meshes.extend(block(BLOCK_CENTRE, BLOCK_HALF, BLOCK_ANGLE, 0));
     meshes.push(sphere(BALL_CENTRE, BALL_RADIUS, 48, 4));
     let mut scene = scene(meshes, materials, camera([0.5, 0.5, 2.45], [0.5, 0.5, 0.0]));
-    scene.grid = with_grid.then(cornell_grid);
+    scene.grid = with_grid.then(|| cornell_grid(Quantity::Vectors));
     scene
 }
 
@@ -146,7 +146,7 @@ const BALL_RADIUS: f32 = 0.2;
 
 /// One bounce of light in the empty box, seen from 9 x 9 x 9 vertices; vertices inside block and ball are invalid and
 /// the edges into them blocked.
-fn cornell_grid() -> IrradianceGrid {
+pub(crate) fn cornell_grid(quantity: Quantity) -> IrradianceGrid {
     let dims = [9u16; 3];
     let lattice = Lattice::new(dims, [0.0; 3], [1.0; 3]).unwrap();
     let directions = integrate::fibonacci_sphere(2000);
@@ -154,7 +154,7 @@ fn cornell_grid() -> IrradianceGrid {
         let local = glam::Quat::from_rotation_y(-BLOCK_ANGLE) * (p - BLOCK_CENTRE);
         local.abs().cmplt(BLOCK_HALF).all() || p.distance(BALL_CENTRE) < BALL_RADIUS
     };
-    let mut grid = IrradianceGrid::new(lattice).unwrap();
+    let mut grid = IrradianceGrid::of(lattice, quantity).unwrap();
     for k in 0..dims[2] {
         for j in 0..dims[1] {
             for i in 0..dims[0] {
@@ -162,7 +162,15 @@ fn cornell_grid() -> IrradianceGrid {
                 // Vertices on the walls look from just inside.
                 let p = at(i, j, k).clamp(DVec3::splat(1e-3), DVec3::splat(1.0 - 1e-3));
                 let index = lattice.index(i, j, k) as usize;
-                grid.set(index, &integrate::hemisphere_vectors(&directions, |w| wall_radiance(p, w)));
+                let radiance = |w| wall_radiance(p, w);
+                match quantity {
+                    Quantity::Vectors => {
+                        grid.set(index, &integrate::hemisphere_vectors(&directions, radiance));
+                    }
+                    Quantity::Radiance => {
+                        grid.set(index, &integrate::radiance_harmonics(&directions, radiance));
+                    }
+                }
                 let here = inside(p.as_vec3());
                 grid.set_validity(index, if here { 0 } else { 255 });
                 let neighbours = [(i + 1, j, k), (i, j + 1, k), (i, j, k + 1)];
