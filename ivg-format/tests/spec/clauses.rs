@@ -159,3 +159,31 @@ fn a_test_that_does_not_exist_is_found_missing() {
     let missing = ["ivg-format/tests/none.rs::f", "conformance/vectors/ivg/none.ivg", "a sentence"];
     assert!(missing.into_iter().all(|name| check_test(name).is_err()));
 }
+
+/// Codes of which no vector can be made, and why: as in `conformance/tests/vectors.rs`.
+const WITHOUT_VECTOR: [i64; 2] = [
+    // 65,536 chunks: our own limit comes first.
+    109, // A record that is fetched alone: a file has no place for more bytes than a record has.
+    113,
+];
+
+#[test]
+fn the_clause_of_every_error_names_a_vector_with_that_error() {
+    let clauses = rows("clauses", "clause");
+    let mut wrong = vec![];
+    for row in rows("errors", "error") {
+        let (code, clause) = (row["code"].as_integer().unwrap(), row["clause"].as_str().unwrap());
+        let of_ivg = ["common", "ivg"].contains(&row["format"].as_str().unwrap());
+        if !of_ivg || row["verdict"].as_str() == Some("need-more") || WITHOUT_VECTOR.contains(&code) {
+            continue;
+        }
+        let clause = clauses.iter().find(|row| row["id"].as_str() == Some(clause)).expect("a clause");
+        let tests =
+            clause.get("tests").and_then(|tests| tests.as_array()).map(Vec::as_slice).unwrap_or_default();
+        let prefix = format!("conformance/vectors/ivg/x-{code}-");
+        if !tests.iter().any(|test| test.as_str().unwrap().starts_with(&prefix)) {
+            wrong.push(format!("{} names no vector for {code} {}", clause["id"], row["name"]));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
