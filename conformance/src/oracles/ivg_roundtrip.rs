@@ -8,7 +8,7 @@ use ivg_format::quant::ratio::decode as decode_ratio;
 use ivg_format::quant::xyz::Xyz24;
 use ivg_format::{
     BakedLight, EncodeError, EncodeOptions, Encoding, Event, GridSource, HemisphereVectors, Lattice, Limits,
-    Quantity, RadianceHarmonics, Units, Values, VertexValues, decode_all, encode, lights, metadata,
+    Order, Quantity, RadianceHarmonics, Units, Values, VertexValues, decode_all, encode, lights, metadata,
 };
 
 /// Vertices along an axis, at most: the longest grid then has 125 vertices, which keeps an input fast.
@@ -23,7 +23,10 @@ const MOST_VERTICES: usize = 5;
 pub fn ivg_roundtrip(data: &[u8]) {
     let mut choices = Choices::new(data);
     let options = choose_options(&mut choices);
-    let grid = Grid::choose(&mut choices, options.encoding.quantity());
+    let mut grid = Grid::choose(&mut choices, options.encoding.quantity());
+    if options.order == Order::Explicit {
+        grid.bundles = Some(grid.choose_bundles(&mut choices, options.vertices_per_slice));
+    }
     let source = grid.source();
     let file = match encode(&source, &options) {
         // Too large for the exponent of the quantised colours, as it may be.
@@ -48,7 +51,7 @@ fn choose_options(choices: &mut Choices<'_>) -> EncodeOptions {
         vertices_per_slice: 1 + choices.below(30) as u32,
         seed: choices.long(),
         units: if choices.byte() < 128 { Units::Radiometric } else { Units::Photometric },
-        ..EncodeOptions::default()
+        order: [Order::Slices, Order::Octree, Order::Explicit][choices.below(3)],
     }
 }
 
@@ -58,6 +61,7 @@ struct Grid {
     values: GridValues,
     validity: Option<Vec<u8>>,
     blocked_edges: Option<Vec<u8>>,
+    bundles: Option<Vec<Vec<u64>>>,
     lights: &'static [BakedLight<'static>],
     meta: &'static [(&'static str, &'static str)],
 }
@@ -117,7 +121,35 @@ impl Grid {
                 GridValues::Radiance(radiance)
             }
         };
-        Self { lattice, values, validity, blocked_edges, lights, meta }
+        Self { lattice, values, validity, blocked_edges, bundles: None, lights, meta }
+    }
+
+    /// Spreads the vertices over bundles; those that are not valid may be in none.
+    fn choose_bundles(&self, choices: &mut Choices<'_>, vertices_per_slice: u32) -> Vec<Vec<u64>> {
+        let longest = self.lattice.dims.into_iter().max().unwrap_or(1);
+        let most = vertices_per_slice as usize * usize::from(longest);
+        let mut full = Vec::new();
+        let mut open = vec![Vec::new(); 4];
+        for vertex in (0..self.lattice.vertex_count()).filter(|&vertex| !self.lattice.is_corner(vertex)) {
+            let valid = self.validity.as_ref().is_none_or(|validity| validity[vertex as usize] != 0);
+            let choice = choices.byte();
+            if !valid && choice >= 128 {
+                continue;
+            }
+            let bundle = &mut open[usize::from(choice % 4)];
+            bundle.push(vertex);
+            if bundle.len() == most {
+                full.push(std::mem::take(bundle));
+            }
+        }
+        full.extend(open.into_iter().filter(|bundle| !bundle.is_empty()));
+        full
+    }
+
+    /// Whether the file has a value for a vertex.
+    fn is_sent(&self, vertex: u64) -> bool {
+        let listed = |bundles: &Vec<Vec<u64>>| bundles.iter().flatten().any(|&sent| sent == vertex);
+        self.lattice.is_corner(vertex) || self.bundles.as_ref().is_none_or(listed)
     }
 
     fn source(&self) -> GridSource<'_> {
@@ -126,7 +158,7 @@ impl Grid {
             values: self.values.borrowed(),
             validity: self.validity.as_deref(),
             blocked_edges: self.blocked_edges.as_deref(),
-            bundles: None,
+            bundles: self.bundles.as_deref(),
             lights: self.lights,
             meta: self.meta,
         }
@@ -146,6 +178,7 @@ impl Grid {
                     (header.encoding, header.units, header.seed, header.vertices_per_slice),
                     (options.encoding, options.units, options.seed, options.vertices_per_slice)
                 );
+                assert_eq!(header.order, options.order);
             }
             Event::Chunk(chunk) if chunk.kind == ivg_format::LIGHTS => {
                 assert!(lights(&chunk).expect("well formed").eq(self.lights.iter().copied()));
@@ -182,7 +215,9 @@ impl Grid {
             _ => {}
         });
         assert_eq!(decoded, Ok(()), "what the encoder wrote is refused");
-        assert!(received.iter().all(|&received| received), "vertices are missing");
+        for (vertex, received) in (0..).zip(received) {
+            assert_eq!(received, self.is_sent(vertex), "vertex {vertex}");
+        }
         assert_eq!(chunks, usize::from(!self.lights.is_empty()) + usize::from(!self.meta.is_empty()));
         assert_eq!(validity, self.validity.clone().unwrap_or(vec![255; count]));
         assert_eq!(edges, self.blocked_edges.clone().unwrap_or(vec![0; count]));
