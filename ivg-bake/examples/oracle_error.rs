@@ -21,13 +21,13 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use glam::{DVec3, Vec3};
+use common::{AnyError, lit_box, numbers, plan_of, vertices_at};
+use glam::DVec3;
 use ivg_bake::reference::{GatheredVectors, Oracle, Sampling};
 use ivg_bake::{BakeOptions, Estimator, Silent, bake};
 use ivg_scene::import::{self, ImportOptions};
-use ivg_scene::{Effect, EffectPlan, Material, Mesh, Need, Node, PlannedEffect, Scene};
 
-type AnyError = Box<dyn std::error::Error>;
+mod common;
 
 struct Arguments {
     scene: Option<PathBuf>,
@@ -56,7 +56,7 @@ fn main() -> Result<(), AnyError> {
     let few = BakeOptions { photons: 1, ..options.clone() };
     let surroundings = bake(&scene, &flat, &plan, &few, &Silent)?;
     let before_photons = cpu_seconds() - started;
-    let vertices = choose(&arguments, &oracle, &surroundings.grid);
+    let vertices = vertices_at(&oracle, &surroundings.grid, arguments.near_surfaces, arguments.vertices);
     let last = DVec3::from(lattice.position(options.dims[0] - 1, options.dims[1] - 1, options.dims[2] - 1));
     let middle = (DVec3::from(lattice.origin) + last) * 0.5;
     let points: Vec<DVec3> = vertices
@@ -140,31 +140,6 @@ fn compare(baked: &[ivg_grid::HemisphereVectors], truth: &[GatheredVectors]) -> 
     [(all[0] / all[1]).sqrt(), (axis[0] / axis[1]).sqrt(), means[0] / means[1]]
 }
 
-/// Vertices to compare, in an order scattered over the lattice.
-fn choose(arguments: &Arguments, oracle: &Oracle<'_>, grid: &ivg_grid::IrradianceGrid) -> Vec<usize> {
-    let lattice = grid.lattice();
-    let half_step = 0.5 * lattice.step.into_iter().filter(|&s| s > 0.0).fold(f64::INFINITY, f64::min);
-    let count = grid.vertex_count();
-    // Multiples of the golden ratio's fraction scatter evenly; a stride coprime to the count visits every vertex once.
-    let mut stride = (count as f64 * 0.618_033_988_749_895) as usize | 1;
-    while gcd(stride, count) != 1 {
-        stride += 2;
-    }
-    (0..count)
-        .map(|n| n * stride % count)
-        .filter(|&vertex| {
-            let [i, j, k] = lattice.coords(vertex as u64);
-            let near = || oracle.clearance(lattice.position(i, j, k).into()) < half_step;
-            grid.is_valid(vertex) && near() == arguments.near_surfaces
-        })
-        .take(arguments.vertices)
-        .collect()
-}
-
-fn gcd(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { gcd(b, a % b) }
-}
-
 /// CPU time of this thread \[s\] where Linux tells it, else the time since the first call.
 fn cpu_seconds() -> f64 {
     static START: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
@@ -172,69 +147,6 @@ fn cpu_seconds() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = text.and_then(|t| t.split_whitespace().next().and_then(|n| n.parse::<f64>().ok()));
     nanoseconds.map_or_else(wall, |n| n * 1e-9)
-}
-
-/// Diffuse indirect light, and textures and sky where the scene has them.
-fn plan_of(scene: &Scene) -> EffectPlan {
-    let planned = |effect, needed| PlannedEffect {
-        effect,
-        need: if needed { Need::Needed } else { Need::NotNeeded },
-        reason: String::new(),
-        cost: None,
-    };
-    EffectPlan {
-        effects: vec![
-            planned(Effect::DiffuseIndirect, true),
-            planned(Effect::Textures, !scene.textures.is_empty()),
-            planned(Effect::Sky, scene.sky.is_some()),
-        ],
-        max_bounces: 64,
-        energy_cutoff: 1e-3,
-    }
-}
-
-/// A closed room of 2 m with two coloured walls, two boxes on its floor and a lit square under its ceiling.
-fn lit_box() -> Scene {
-    let mut mesh = Mesh { name: "room".into(), ..Mesh::default() };
-    let mut add = |corner: [f32; 3], u: [f32; 3], v: [f32; 3], material: u32| {
-        let [corner, u, v] = [corner, u, v].map(Vec3::from);
-        let first = mesh.positions.len() as u32;
-        mesh.positions.extend([corner, corner + u, corner + u + v, corner + v]);
-        mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
-        mesh.triangle_materials.extend([material; 2]);
-    };
-    let mut add_box = |[x, y, z]: [f32; 3], [sx, sy, sz]: [f32; 3], materials: [u32; 6]| {
-        add([x, y, z], [0.0, 0.0, sz], [0.0, sy, 0.0], materials[0]);
-        add([x + sx, y, z], [0.0, sy, 0.0], [0.0, 0.0, sz], materials[1]);
-        add([x, y, z], [sx, 0.0, 0.0], [0.0, 0.0, sz], materials[2]);
-        add([x, y + sy, z], [0.0, 0.0, sz], [sx, 0.0, 0.0], materials[3]);
-        add([x, y, z], [0.0, sy, 0.0], [sx, 0.0, 0.0], materials[4]);
-        add([x, y, z + sz], [sx, 0.0, 0.0], [0.0, sy, 0.0], materials[5]);
-    };
-    add_box([0.0; 3], [2.0; 3], [1, 2, 0, 0, 0, 0]);
-    add_box([0.3, 0.0, 0.4], [0.6, 1.2, 0.6], [0; 6]);
-    add_box([1.1, 0.0, 0.9], [0.6, 0.6, 0.6], [0; 6]);
-    // Counter-clockwise from below: the square shines down.
-    add([0.7, 1.95, 0.7], [0.6, 0.0, 0.0], [0.0, 0.0, 0.6], 3);
-    let colour = |name: &str, albedo: [f32; 3]| Material {
-        name: name.into(),
-        albedo: albedo.into(),
-        ..Material::default()
-    };
-    let light =
-        Material { emission: Vec3::new(18.0, 14.0, 7.0), two_sided: false, ..colour("light", [0.0; 3]) };
-    Scene {
-        name: "lit box".into(),
-        meshes: vec![mesh],
-        nodes: vec![Node { name: "box".into(), mesh: 0, transform: glam::DAffine3::IDENTITY }],
-        materials: vec![
-            colour("white", [0.75; 3]),
-            colour("red", [0.6, 0.05, 0.05]),
-            colour("green", [0.1, 0.4, 0.1]),
-            light,
-        ],
-        ..Scene::default()
-    }
 }
 
 fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, AnyError> {
@@ -275,13 +187,4 @@ fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, AnyEr
         return Err("--seeds and --vertices must be at least 1, --paths at least 2".into());
     }
     Ok(parsed)
-}
-
-/// `N` numbers between separators.
-fn numbers<T: std::str::FromStr, const N: usize>(text: &str, separator: char) -> Result<[T; N], AnyError>
-where
-    T::Err: std::error::Error + 'static,
-{
-    let numbers: Vec<T> = text.split(separator).map(str::parse).collect::<Result<_, _>>()?;
-    numbers.try_into().map_err(|_| format!("{text}: {N} numbers separated by {separator} are needed").into())
 }

@@ -43,6 +43,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod alternatives;
 mod assemble;
 #[cfg(any(test, feature = "cases"))]
 pub mod cases;
@@ -56,6 +57,7 @@ mod lookup;
 mod metrics;
 mod pyramid;
 mod reconstruct;
+mod separate;
 pub mod spatial;
 pub mod texture;
 mod values;
@@ -68,6 +70,7 @@ pub use ivg_format::{HemisphereVectors, Quantity, RadianceHarmonics, Values, Ver
 pub use lookup::SURFACE_BIAS;
 pub use metrics::{IrradianceError, relative_rmse};
 pub use reconstruct::{Reconstruction, TANGENTIAL_SHARE, reconstruct, reconstruct_signed, three_vector};
+pub use separate::SeparateTextures;
 pub use spatial::SpatialFilter;
 pub use texture::{FLAG_USABLE, INVALID_TEXTURE_WEIGHT, texture_count};
 pub use values::GridValues;

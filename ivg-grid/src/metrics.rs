@@ -9,6 +9,7 @@ use crate::{HemisphereVectors, Reconstruction, reconstruct_signed};
 pub struct IrradianceError {
     count: u64,
     exact: f64,
+    exact_squares: f64,
     difference: f64,
     squares: f64,
     negative: u64,
@@ -25,6 +26,7 @@ impl IrradianceError {
             let difference = value.max(0.0) - exact[channel];
             self.count += 1;
             self.exact += exact[channel];
+            self.exact_squares += exact[channel] * exact[channel];
             self.difference += difference;
             self.squares += difference * difference;
             self.negative += u64::from(value < 0.0);
@@ -51,11 +53,18 @@ impl IrradianceError {
         self.count
     }
 
-    /// Root mean square error divided by the mean exact irradiance; 0.05 is 5 %. Not a number before anything bright
-    /// was counted.
+    /// Root mean square error divided by the root mean square of the exact irradiance; 0.05 is 5 %. Not a number before
+    /// anything bright was counted.
     #[must_use]
     pub fn relative_rmse(&self) -> f64 {
-        (self.squares / self.count as f64).sqrt() / (self.exact / self.count as f64)
+        (self.squares / self.exact_squares).sqrt()
+    }
+
+    /// Like [`relative_rmse`](Self::relative_rmse), less what the exact values themselves are off: `noise` is the mean of their
+    /// squared standard errors \[(W/m²)²\], independent of the values counted. 0 where nothing is left.
+    #[must_use]
+    pub fn relative_rmse_less(&self, noise: f64) -> f64 {
+        ((self.squares / self.count as f64 - noise).max(0.0) * self.count as f64 / self.exact_squares).sqrt()
     }
 
     /// Mean error divided by the mean exact irradiance: negative where light is lost.

@@ -278,7 +278,7 @@ impl Support {
 /// The vertex at or before a position along one axis, but not the last one if there is another, and how far the
 /// position lies past it in steps, 0 to 1. Positions outside the lattice are moved to its nearest end.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the lattice before")]
-fn locate(position: f64, origin: f64, step: f64, last: u16) -> (u16, f64) {
+pub(crate) fn locate(position: f64, origin: f64, step: f64, last: u16) -> (u16, f64) {
     if last == 0 {
         return (0, 0.0);
     }

@@ -8,9 +8,21 @@ fn the_errors_of_two_values_are_computed_by_hand() {
     error.add(Vec3::new(2.0, 4.0, -9.0), DVec3::splat(4.0));
     assert_eq!(error.count(), 6);
     assert!((error.relative_rmse() - (22.0_f64 / 6.0).sqrt() / 4.0).abs() < 1e-15);
+    // Of the mean square 22/6, 10/6 is noise of the exact values.
+    assert!((error.relative_rmse_less(10.0 / 6.0) - 2.0_f64.sqrt() / 4.0).abs() < 1e-15);
+    assert_eq!(error.relative_rmse_less(4.0), 0.0);
     assert!((error.relative_bias() + 6.0 / 24.0).abs() < 1e-15);
     assert!((error.relative_maximum() - 1.0).abs() < 1e-15);
     assert!((error.negative_share() - 1.0 / 6.0).abs() < 1e-15);
+}
+
+#[test]
+fn errors_are_relative_to_the_root_mean_square_and_bias_to_the_mean() {
+    let mut error = IrradianceError::default();
+    error.add(Vec3::new(1.0, 8.0, 0.0), DVec3::new(1.0, 7.0, 0.0));
+    assert!((error.relative_rmse() - (1.0_f64 / 50.0).sqrt()).abs() < 1e-15);
+    assert!((error.relative_bias() - 1.0 / 8.0).abs() < 1e-15);
+    assert!((error.relative_maximum() - 3.0 / 8.0).abs() < 1e-15);
 }
 
 #[test]
