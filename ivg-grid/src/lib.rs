@@ -52,6 +52,7 @@ mod fill;
 mod filled;
 mod grid;
 pub mod harmonics;
+pub mod importance;
 pub mod integrate;
 mod lookup;
 mod metrics;
