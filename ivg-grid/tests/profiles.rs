@@ -10,8 +10,10 @@ use ivg_grid::{
 use quickcheck::{Arbitrary, Gen, TestResult, quickcheck};
 use std::f64::consts::PI;
 
+/// The document on one line.
 fn specification() -> String {
-    std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/ivg.md")).unwrap()
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/ivg.md")).unwrap();
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// A number from −1 to 1.
