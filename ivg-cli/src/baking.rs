@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use ivg_bake::{BakeOptions, BakeStats, Estimator, PilotReport};
-use ivg_format::{EncodeOptions, Quantity};
+use ivg_format::{EncodeOptions, GridSource, Quantity};
 use ivg_grid::IrradianceGrid;
 use ivg_scene::import::{self, ImportOptions};
 use ivg_scene::plan::{self, PlanOptions};
@@ -148,5 +148,7 @@ fn encode(
         vertices_per_slice: settings.per_slice,
         ..EncodeOptions::default()
     };
-    writing::encode(grid.as_source(), &extras, &options)
+    let bundles = writing::bundles(grid, &options);
+    let source = GridSource { bundles: bundles.as_deref(), ..grid.as_source() };
+    writing::encode(source, &extras, &options)
 }

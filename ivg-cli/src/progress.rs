@@ -27,6 +27,15 @@ pub(crate) fn percent(message: &str) -> ProgressBar {
     bar
 }
 
+/// A bar that shows how long something takes already, of which nobody knows how much is done.
+pub(crate) fn working(message: &str) -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    bar.set_style(style("{msg:14} {spinner} {elapsed}"));
+    bar.set_message(message.to_owned());
+    bar.enable_steady_tick(REDRAW);
+    bar
+}
+
 fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template)
         .map_or_else(|_| ProgressStyle::default_bar(), |s| s.progress_chars("=> "))

@@ -1,8 +1,11 @@
 //! A grid as a file: shared by every command that writes one.
 
-use ivg_format::{BakedLight, EncodeOptions, GridSource};
+use ivg_format::{BakedLight, EncodeOptions, GridSource, Order};
+use ivg_grid::IrradianceGrid;
+use ivg_grid::importance::{self, ImportanceOptions};
 
 use crate::failure::Failure;
+use crate::progress;
 
 /// What a file holds besides the grid.
 #[derive(Debug, Default)]
@@ -11,6 +14,19 @@ pub(crate) struct Extras {
     pub(crate) lights: Vec<(String, bool)>,
     /// Key-value pairs.
     pub(crate) metadata: Vec<(String, String)>,
+}
+
+/// The bundles of the order explicit, what matters most first; shows that it is at work. Nothing for other orders.
+pub(crate) fn bundles(grid: &IrradianceGrid, options: &EncodeOptions) -> Option<Vec<Vec<u64>>> {
+    if options.order != Order::Explicit {
+        return None;
+    }
+    let longest = grid.lattice().dims.into_iter().max().unwrap_or(1);
+    let largest = options.vertices_per_slice as usize * usize::from(longest);
+    let bar = progress::working("order vertices");
+    let bundles = importance::bundles(grid, &ImportanceOptions::new(largest));
+    bar.finish_and_clear();
+    Some(bundles)
 }
 
 /// Encodes a grid.

@@ -127,7 +127,7 @@ impl Session {
 
     /// As [`crate::Session::grid`].
     #[must_use]
-    pub fn grid(&self) -> Option<&IrradianceGrid> {
+    pub fn grid(&mut self) -> Option<&IrradianceGrid> {
         self.session.grid()
     }
 

@@ -83,9 +83,9 @@ impl LocalScene {
         self.assembly.replay(index)
     }
 
-    /// The grid, if the scene has one.
+    /// The grid, if the scene has one, filled: vertices inside geometry have a value too. The first call fills it.
     #[must_use]
-    pub fn grid(&self) -> Option<&IrradianceGrid> {
+    pub fn grid(&mut self) -> Option<&IrradianceGrid> {
         self.assembly.grid()
     }
 

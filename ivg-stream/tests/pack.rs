@@ -56,9 +56,10 @@ fn what_is_packed_is_read_back() {
     // Positions in the world are the same to the last bit, although scene.glb has its own origins.
     let (source, _) = scene(VERTICES);
     assert!(corners(&local.scene_at(1.0)) == corners(&source));
+    let lattice = local.grid_header().unwrap().lattice;
     let grid = local.grid().unwrap();
-    assert_eq!(grid.received_count(), grid.vertex_count());
-    assert_eq!(local.grid_header().unwrap().lattice, *grid.lattice());
+    assert_eq!((grid.received_count(), *grid.lattice()), (grid.vertex_count(), lattice));
+    assert!(grid.is_filled());
     assert!(open(&home.path().join("scene.glb")).is_ok(), "scene.glb itself names the directory");
 }
 

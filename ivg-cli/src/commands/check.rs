@@ -132,9 +132,11 @@ impl Coverage {
         ];
         for (what, breaks) in rules {
             if let Some(first) = self.vertices.iter().position(breaks) {
-                let count = self.vertices.iter().filter(|vertex| breaks(vertex)).count();
-                warnings
-                    .push(format!("{count} vertices are {what}, the first is vertex {first} (IVG-EXP-04)"));
+                let more = match self.vertices[first + 1..].iter().filter(|vertex| breaks(vertex)).count() {
+                    0 => String::new(),
+                    count => format!(", and {count} more"),
+                };
+                warnings.push(format!("vertex {first} is {what}{more} (IVG-EXP-04)"));
             }
         }
     }

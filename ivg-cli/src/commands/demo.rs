@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use ivg_format::{Encoding, Order};
-use ivg_grid::{FillOptions, Reconstruction};
+use ivg_grid::Reconstruction;
 use ivg_render::{Image, RenderOptions, RenderScene};
 use ivg_scene::{Camera, EffectPlan};
 use ivg_stream::blocking::{Server, Session};
@@ -170,10 +170,11 @@ fn draw(
     let loaded = LoadedScene::from_scene(scene)?;
     let mut render_scene = RenderScene::from_scene(&loaded.scene, &loaded.flat, camera);
     let mut options = RenderOptions::for_plan(plan, arguments.size.width, arguments.size.height);
-    match (session.grid(), session.grid_header()) {
-        (Some(grid), Some(header)) if stage.light.is_some() => {
-            options.reconstruction = Reconstruction::for_encoding(header.encoding);
-            render_scene.grid = Some(ivg_grid::fill(grid, &FillOptions::default()));
+    let encoding = session.grid_header().map(|header| header.encoding);
+    match (session.grid(), encoding) {
+        (Some(grid), Some(encoding)) if stage.light.is_some() => {
+            options.reconstruction = Reconstruction::for_encoding(encoding);
+            render_scene.grid = Some(grid.clone());
         }
         _ => options.indirect = false,
     }

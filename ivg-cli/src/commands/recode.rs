@@ -1,7 +1,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use ivg_format::{EncodeOptions, Event, Header, Limits, Quantity, decode_all};
+use ivg_format::{EncodeOptions, Event, Header, Limits, Order, Quantity, decode_all};
 use ivg_grid::{IrradianceGrid, harmonics};
 use serde_json::{Value, json};
 
@@ -35,7 +35,15 @@ pub(crate) fn run(arguments: &RecodeArguments) -> Result<ExitCode, Failure> {
         source.validity = Some(source_grid.validity());
         source.blocked_edges = Some(source_grid.blocked_edges());
     }
-    let file = writing::encode(source, &extras(path, &bytes)?, &options)?;
+    let Rest { extras, bundles } = rest(path, &bytes)?;
+    // An order that is not asked for and still fits stays as it is.
+    let keeps_bundles = arguments.order.is_none() && arguments.per_slice.is_none();
+    let bundles = match options.order {
+        Order::Explicit if keeps_bundles => Some(bundles),
+        _ => writing::bundles(source_grid, &options),
+    };
+    source.bundles = bundles.as_deref();
+    let file = writing::encode(source, &extras, &options)?;
 
     let (after, written) = read(&arguments.out, &file)?;
     let before = Stored { grid: &grid, encoding: header.encoding };
@@ -77,9 +85,18 @@ fn converted(
     }
 }
 
-/// Lights and metadata of the file. Chunks that this release does not know may refer to what changes; they are left out.
-fn extras(path: &Path, bytes: &[u8]) -> Result<Extras, Failure> {
+/// What is in a file besides header and values.
+struct Rest {
+    extras: Extras,
+    /// The vertices of each bundle.
+    bundles: Vec<Vec<u64>>,
+}
+
+/// Lights, metadata and bundles of the file. Chunks that this release does not know may refer to what changes; they are
+/// left out.
+fn rest(path: &Path, bytes: &[u8]) -> Result<Rest, Failure> {
     let mut extras = Extras::default();
+    let mut bundles = Vec::new();
     let mut broken = None;
     let mut take = |chunk: &ivg_format::Chunk<'_>| -> Result<(), ivg_format::Error> {
         if chunk.kind == ivg_format::LIGHTS {
@@ -93,13 +110,13 @@ fn extras(path: &Path, bytes: &[u8]) -> Result<Extras, Failure> {
         }
         Ok(())
     };
-    decode_all(bytes, &Limits::default(), |event| {
-        if let Event::Chunk(chunk) = event {
-            broken = broken.or(take(&chunk).err());
-        }
+    decode_all(bytes, &Limits::default(), |event| match event {
+        Event::Chunk(chunk) => broken = broken.or(take(&chunk).err()),
+        Event::Bundle(bundle) => bundles.push(bundle.vertices().collect()),
+        _ => {}
     })
     .map_err(|error| Failure::file(path, error))?;
-    broken.map_or(Ok(extras), |error| Err(Failure::file(path, error)))
+    broken.map_or(Ok(Rest { extras, bundles }), |error| Err(Failure::file(path, error)))
 }
 
 fn report(
@@ -140,10 +157,18 @@ fn report(
             String::new()
         };
         eprintln!(
-            "ivg: lossy: {cannot}numbers are rounded by {:.2} %, irradiance differs by {:.2} % (relative RMSE)",
-            100.0 * loss.values,
-            100.0 * loss.irradiance,
+            "ivg: lossy: {cannot}numbers differ by {}, irradiance by {} (relative RMSE)",
+            percent(loss.values),
+            percent(loss.irradiance),
         );
+    }
+}
+
+fn percent(share: f64) -> String {
+    if share > 0.0 && share < 5e-5 {
+        "less than 0.01 %".to_owned()
+    } else {
+        format!("{:.2} %", 100.0 * share)
     }
 }
 

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use glam::{DVec3, Vec3};
 use ivg_bake::reference::{Oracle, Sampling, Shown};
-use ivg_format::{Header, Quantity};
+use ivg_format::{Encoding, Quantity};
 use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction};
 use ivg_render::{Image, RenderOptions, RenderScene};
 use ivg_scene::plan::{self, PlanOptions};
@@ -44,7 +44,10 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
         match source.grid {
             Some((grid, reconstruction)) => {
                 options.reconstruction = reconstruction;
-                render_scene.grid = Some(ivg_grid::fill(&grid, &FillOptions::default()));
+                // A scene that was streamed has its grid filled already.
+                let filled = grid.is_filled();
+                render_scene.grid =
+                    Some(if filled { grid } else { ivg_grid::fill(&grid, &FillOptions::default()) });
             }
             None => options.indirect = false,
         }
@@ -70,12 +73,14 @@ fn open(arguments: &RenderArguments) -> Result<Source, Failure> {
             Session::open(&arguments.source, FetchOptions::default(), &mut |_| {}).map_err(Failure::new)?;
         session.fetch_until(Goal::ALL, &mut |_| {}).map_err(Failure::new)?;
         let scene = session.scene_at(1.0);
-        return packed(arguments, scene, session.grid().zip(session.grid_header()));
+        let encoding = session.grid_header().map(|header| header.encoding);
+        return packed(arguments, scene, session.grid().zip(encoding));
     }
     if path.is_dir() || path.join("scene.glb").is_file() {
         let mut local = LocalScene::open(path, SceneLimits::default()).map_err(Failure::new)?;
         let scene = local.scene_at(1.0);
-        return packed(arguments, scene, local.grid().zip(local.grid_header()));
+        let encoding = local.grid_header().map(|header| header.encoding);
+        return packed(arguments, scene, local.grid().zip(encoding));
     }
     let loaded = LoadedScene::load(path, arguments.lights.as_deref())?;
     if !wants_grid {
@@ -111,7 +116,7 @@ fn planned(loaded: &LoadedScene) -> EffectPlan {
 fn packed(
     arguments: &RenderArguments,
     scene: ivg_scene::Scene,
-    grid: Option<(&IrradianceGrid, &Header)>,
+    grid: Option<(&IrradianceGrid, Encoding)>,
 ) -> Result<Source, Failure> {
     if arguments.lights.is_some() || arguments.ivg.is_some() {
         return Err(Failure::usage("--lights and --ivg are for scene files; a packed scene has its own"));
@@ -119,7 +124,7 @@ fn packed(
     let loaded = LoadedScene::from_scene(scene)?;
     let plan = planned(&loaded);
     let grid = grid.filter(|_| arguments.indirect == IndirectArgument::Grid);
-    let grid = grid.map(|(grid, header)| (grid.clone(), Reconstruction::for_encoding(header.encoding)));
+    let grid = grid.map(|(grid, encoding)| (grid.clone(), Reconstruction::for_encoding(encoding)));
     Ok(Source { loaded, plan, grid })
 }
 

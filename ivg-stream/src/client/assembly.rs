@@ -97,8 +97,8 @@ impl Assembly {
         self.meshes[*self.mesh_files.get(index)?].contents.replay()
     }
 
-    pub(crate) fn grid(&self) -> Option<&IrradianceGrid> {
-        self.grid.as_ref()?.contents.grid()
+    pub(crate) fn grid(&mut self) -> Option<&IrradianceGrid> {
+        self.grid.as_mut()?.contents.grid()
     }
 
     pub(crate) fn grid_header(&self) -> Option<&ivg_format::Header> {

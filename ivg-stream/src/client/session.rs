@@ -135,10 +135,14 @@ impl Session {
         self.assembly.replay(index)
     }
 
-    /// What has arrived of the grid, vertices not received marked as such; `None` before its first record and in
-    /// scenes without a grid.
+    /// The grid as far as it has arrived, filled: every vertex has a value, and
+    /// [`is_received`](IrradianceGrid::is_received) tells whose has arrived. `None` before its first record and in scenes
+    /// without a grid.
+    ///
+    /// Filling is done here and only for what has changed since the last call: after a request the vertices that depend
+    /// on it, and nothing for a session that nobody looks at. The result does not depend on how often it was asked for.
     #[must_use]
-    pub fn grid(&self) -> Option<&IrradianceGrid> {
+    pub fn grid(&mut self) -> Option<&IrradianceGrid> {
         self.assembly.grid()
     }
 

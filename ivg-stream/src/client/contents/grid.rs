@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use ivg_format::{Decoder, Event, Header, Limits, RecordId, Step, decode_record};
-use ivg_grid::IrradianceGrid;
+use ivg_format::{Decoder, Event, Header, Limits, Order, RecordId, Step, decode_record};
+use ivg_grid::{FillOptions, FilledGrid, IrradianceGrid};
 
 use super::refusal;
 use crate::client::download::{Contents, Prefix, Refusal};
@@ -12,8 +12,17 @@ use crate::client::download::{Contents, Prefix, Refusal};
 #[derive(Debug)]
 pub(in crate::client) struct GridContents {
     max_vertices: u64,
-    /// The header, and the grid once the first record is in.
-    state: Option<(Header, Option<IrradianceGrid>)>,
+    state: Option<State>,
+}
+
+/// What is known once the prefix is in.
+#[derive(Debug)]
+struct State {
+    header: Header,
+    /// Vertices that the file brings: all of the lattice, but for those inside geometry that no bundle lists.
+    brought: u64,
+    /// What has been received, once the first record is in.
+    grid: Option<FilledGrid>,
 }
 
 impl GridContents {
@@ -21,14 +30,14 @@ impl GridContents {
         Self { max_vertices, state: None }
     }
 
-    /// What is in, `None` before the first record.
-    pub(in crate::client) fn grid(&self) -> Option<&IrradianceGrid> {
-        self.state.as_ref()?.1.as_ref()
+    /// What is in, filled; `None` before the first record.
+    pub(in crate::client) fn grid(&mut self) -> Option<&IrradianceGrid> {
+        self.state.as_mut()?.grid.as_mut().map(FilledGrid::grid)
     }
 
     /// The header, `None` before the prefix.
     pub(in crate::client) fn header(&self) -> Option<&Header> {
-        self.state.as_ref().map(|(header, _)| header)
+        self.state.as_ref().map(|state| &state.header)
     }
 
     /// The record at place `index` in file order: corners, validity records, bundles, end.
@@ -54,7 +63,7 @@ impl Contents for GridContents {
         loop {
             let offset = decoder.offset().0;
             if let Some(header) = decoder.header().filter(|header| header.data_offset == offset) {
-                self.state = Some((header.clone(), None));
+                self.state = Some(State { header: header.clone(), brought: brought(header), grid: None });
                 return Ok(Prefix::Whole(offset));
             }
             let rest = usize::try_from(offset).ok().and_then(|at| bytes.get(at..)).unwrap_or_default();
@@ -92,11 +101,11 @@ impl Contents for GridContents {
     }
 
     fn vertices(&self) -> Option<u64> {
-        self.header().map(|header| header.lattice.vertex_count())
+        self.state.as_ref().map(|state| state.brought)
     }
 
     fn accept(&mut self, index: u32, bytes: &[u8]) -> Result<(), Refusal> {
-        let (Some(id), Some((header, grid))) = (self.record(index), &mut self.state) else {
+        let (Some(id), Some(State { header, grid, .. })) = (self.record(index), &mut self.state) else {
             return Err(Refusal::Damaged("a record that the file does not have".to_owned()));
         };
         let event = decode_record(header, id, bytes).map_err(|error| refusal(&error))?;
@@ -108,7 +117,8 @@ impl Contents for GridContents {
             None => {
                 let new =
                     IrradianceGrid::with_limit(header.lattice, header.encoding.quantity(), self.max_vertices);
-                grid.insert(new.map_err(|error| Refusal::Final(error.to_string()))?)
+                let new = new.map_err(|error| Refusal::Final(error.to_string()))?;
+                grid.insert(FilledGrid::new(new, FillOptions::default()))
             }
         };
         grid.accept(&event).map_err(|error| Refusal::Final(error.to_string()))
@@ -116,5 +126,17 @@ impl Contents for GridContents {
 
     fn fresh(&self) -> Self {
         Self::new(self.max_vertices)
+    }
+}
+
+/// Vertices in the records of a file.
+fn brought(header: &Header) -> u64 {
+    match header.order {
+        Order::Explicit => header
+            .records()
+            .filter(|id| matches!(id, RecordId::Corners | RecordId::Bundle(_)))
+            .map(|id| header.record_vertices(id))
+            .sum(),
+        _ => header.lattice.vertex_count(),
     }
 }

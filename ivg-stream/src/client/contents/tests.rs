@@ -1,5 +1,5 @@
-use ivg_format::{EncodeOptions, Encoding, GridSource, Lattice};
-use ivg_grid::IrradianceGrid;
+use ivg_format::{EncodeOptions, Encoding, GridSource, Lattice, Order};
+use ivg_grid::{FillOptions, IrradianceGrid, fill};
 use pmesh_format::{IndexedMesh, ProgressiveMesh};
 use quickcheck::quickcheck;
 
@@ -24,6 +24,22 @@ fn radiance_file() -> Vec<u8> {
     let options =
         EncodeOptions { encoding: Encoding::Sh2, vertices_per_slice: 2, ..EncodeOptions::default() };
     ivg_format::encode(&GridSource::new(lattice, &radiance), &options).unwrap()
+}
+
+/// The same lattice in the order explicit: vertices inside geometry are in no bundle.
+fn explicit_file() -> Vec<u8> {
+    let lattice = Lattice::new([3, 5, 4], [0.0; 3], [1.0, 2.0, 3.0]).unwrap();
+    let vectors: Vec<_> = (0..60).map(|i| [[[i as f32, 0.5, 0.25]; 3]; 6]).collect();
+    let validity: Vec<u8> = (0..60).map(|i| if i % 7 == 3 { 0 } else { 255 }).collect();
+    let corners: Vec<u64> = lattice.corners().collect();
+    let bring = |vertex: &u64| validity[*vertex as usize] > 0 && !corners.contains(vertex);
+    let vertices: Vec<u64> = (0..60).filter(bring).collect();
+    let bundles: Vec<Vec<u64>> = vertices.chunks(8).rev().map(<[u64]>::to_vec).collect();
+    let mut source = GridSource::new(lattice, &vectors);
+    source.validity = Some(&validity);
+    source.bundles = Some(&bundles);
+    let options = EncodeOptions { order: Order::Explicit, vertices_per_slice: 2, ..EncodeOptions::default() };
+    ivg_format::encode(&source, &options).unwrap()
 }
 
 /// A fan whose last vertex always collapses onto the one before it.
@@ -66,16 +82,29 @@ fn arrives<C: Contents>(download: &mut Download<C>, file: &[u8], cuts: &[usize])
 quickcheck! {
     fn a_grid_cut_anywhere_is_the_grid_of_the_file(cuts: Vec<usize>) -> bool {
         let file = grid_file();
-        let (expected, _) = IrradianceGrid::from_file(&file, &ivg_format::Limits::default()).unwrap();
+        let (whole, _) = IrradianceGrid::from_file(&file, &ivg_format::Limits::default()).unwrap();
+        let expected = fill(&whole, &FillOptions::default());
         let mut download = begin(GridContents::new(1000), &file);
         arrives(&mut download, &file, &cuts) && download.contents.grid() == Some(&expected)
     }
 
     fn a_grid_of_radiance_cut_anywhere_is_the_grid_of_the_file(cuts: Vec<usize>) -> bool {
         let file = radiance_file();
-        let (expected, _) = IrradianceGrid::from_file(&file, &ivg_format::Limits::default()).unwrap();
+        let (whole, _) = IrradianceGrid::from_file(&file, &ivg_format::Limits::default()).unwrap();
+        let expected = fill(&whole, &FillOptions::default());
         let mut download = begin(GridContents::new(1000), &file);
         arrives(&mut download, &file, &cuts) && download.contents.grid() == Some(&expected)
+    }
+
+    fn an_explicit_grid_cut_anywhere_is_the_grid_of_the_file(cuts: Vec<usize>) -> bool {
+        let file = explicit_file();
+        let (whole, _) = IrradianceGrid::from_file(&file, &ivg_format::Limits::default()).unwrap();
+        let expected = fill(&whole, &FillOptions::default());
+        let mut download = begin(GridContents::new(1000), &file);
+        arrives(&mut download, &file, &cuts)
+            && download.contents.grid() == Some(&expected)
+            && download.vertices() < expected.vertex_count() as u64
+            && download.share() == 1.0
     }
 
     fn a_mesh_cut_anywhere_is_the_mesh_of_the_file(cuts: Vec<usize>) -> bool {
@@ -120,6 +149,7 @@ fn states_after_each_length<C: Contents>(fresh: impl Fn() -> C, file: &[u8]) {
 #[test]
 fn parts_count_once_they_are_whole() {
     states_after_each_length(|| GridContents::new(1000), &grid_file());
+    states_after_each_length(|| GridContents::new(1000), &explicit_file());
     states_after_each_length(|| MeshContents::new(1000), &mesh_file());
 }
 
@@ -146,6 +176,7 @@ fn flips_are_noticed<C: Contents>(fresh: impl Fn() -> C, file: &[u8]) {
 #[test]
 fn no_flipped_byte_gets_through() {
     flips_are_noticed(|| GridContents::new(1000), &grid_file());
+    flips_are_noticed(|| GridContents::new(1000), &explicit_file());
     flips_are_noticed(|| MeshContents::new(1000), &mesh_file());
 }
 
