@@ -7,7 +7,8 @@ use ivg_format::Lattice;
 
 use crate::integrate::fibonacci_sphere;
 use crate::{
-    FillOptions, HemisphereVectors, IrradianceGrid, Reconstruction, SpatialFilter, fill, reconstruct,
+    FillOptions, FilledGrid, HemisphereVectors, IrradianceGrid, Reconstruction, SpatialFilter, fill, harmonics,
+    reconstruct,
 };
 
 /// A hard case.
@@ -57,6 +58,11 @@ pub const CASES: &[Case] = &[
         run: || furnace(Reconstruction::NSquared, 0.4227),
     },
     Case {
+        name: "white furnace, radiance harmonics",
+        figure: "largest relative error over 500 normals",
+        run: harmonic_furnace,
+    },
+    Case {
         name: "hemispheres that cancel: equal lamps from +x and -x",
         figure: "largest error on the axes over the lamps' irradiance",
         run: || opposite_lamps(Vec3::ONE, Vec3::ONE),
@@ -84,6 +90,11 @@ pub const CASES: &[Case] = &[
     Case { name: "nothing received", figure: "largest component", run: nothing_received },
     Case { name: "order of arrival", figure: "vertices whose bits differ", run: arrival_order },
     Case {
+        name: "a grid that is looked at while it arrives",
+        figure: "vertices whose bits differ from those of filling at the end",
+        run: looks_on_the_way,
+    },
+    Case {
         name: "filling two rooms divided by a wall thinner than a cell",
         figure: "light in the dark room over light in the bright one",
         run: || leak(false),
@@ -106,6 +117,18 @@ fn furnace(method: Reconstruction, bound: f64) -> Outcome {
         .map(|n| f64::from((reconstruct(method, &vectors, n.as_vec3()) - Vec3::ONE).abs().max_element()))
         .fold(0.0, f64::max);
     Outcome { measured, bound }
+}
+
+/// Radiance 1/π from everywhere: the first coefficient is 2√π times that, the irradiance 1.
+fn harmonic_furnace() -> Outcome {
+    let mut channel = [0.0; 9];
+    channel[0] = std::f32::consts::FRAC_2_SQRT_PI;
+    let measured = fibonacci_sphere(500)
+        .iter()
+        .map(|n| harmonics::irradiance(&[channel; 3], n.as_vec3()) - Vec3::ONE)
+        .map(|off| f64::from(off.abs().max_element()))
+        .fold(0.0, f64::max);
+    Outcome { measured, bound: 2e-6 }
 }
 
 /// Lamps just above the plane y = 0 in the directions +x and -x: the hemispheres along x see one each, the others
@@ -170,6 +193,27 @@ fn arrival_order() -> Outcome {
         filled.vectors().iter().map(|vectors| vectors[0][0][0].to_bits()).collect::<Vec<u32>>()
     };
     let differing = bits(&forwards).into_iter().zip(bits(&backwards)).filter(|(a, b)| a != b).count();
+    Outcome { measured: differing as f64, bound: 0.0 }
+}
+
+/// Vertices, some of them twice, arrive beside a wall with a hole in it; after each the filled grid is looked at.
+fn looks_on_the_way() -> Outcome {
+    let mut received = cube([8, 7, 9]);
+    for index in (3..received.vertex_count()).step_by(8).filter(|index| index % 56 != 3) {
+        received.set_blocked_edges(index, 0b001);
+    }
+    received.set_validity(100, 0);
+    let mut filled = FilledGrid::new(received.clone(), FillOptions::default());
+    let mut differing = 0;
+    for n in 0..150_usize {
+        let index = n * 179 % 150 * 3;
+        let vectors = [[[(n as f32 * 0.61).sin(); 3]; 3]; 6];
+        received.set(index, &vectors);
+        filled.set(index, &vectors);
+        let expected = fill(&received, &FillOptions::default());
+        let pairs = filled.grid().vectors().iter().zip(expected.vectors());
+        differing += pairs.filter(|(a, b)| a[0][0][0].to_bits() != b[0][0][0].to_bits()).count();
+    }
     Outcome { measured: differing as f64, bound: 0.0 }
 }
 

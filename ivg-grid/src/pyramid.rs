@@ -236,7 +236,7 @@ impl Level {
         match &self.links {
             Links::Open(bits) => {
                 let bits = bits[node];
-                let strides = [0, 1, 2].map(|axis| self.stride(axis));
+                let strides = [self.stride(0), self.stride(1), self.stride(2)];
                 let steps = |direction: usize| usize::from(bits >> direction & 1) * strides[direction / 2];
                 Some([
                     node - steps(0),
@@ -249,7 +249,10 @@ impl Level {
             }
             Links::Lists { single, .. } => {
                 let single = &single[node];
-                (!single.contains(&NONE)).then(|| single.map(|node| node as usize))
+                let [a, b, c, d, e, f] = *single;
+                let several = [a, b, c, d, e, f].contains(&NONE);
+                let nodes = [a as usize, b as usize, c as usize, d as usize, e as usize, f as usize];
+                (!several).then_some(nodes)
             }
         }
     }

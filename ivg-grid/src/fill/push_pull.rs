@@ -9,7 +9,9 @@ use crate::pyramid::{DIRECTIONS, Level, NONE, Pyramid};
 const FACING: [u8; DIRECTIONS] =
     [0b1010_1010, 0b0101_0101, 0b1100_1100, 0b0011_0011, 0b1111_0000, 0b0000_1111];
 
-/// A pushed node with so many known neighbours is not smoothed: their mean is as good.
+/// A pushed node with so many known neighbours is not smoothed. Smoothing it too would lower the error by 1 % where half
+/// of the vertices have been received, by up to 5 % where three quarters have, and make more vertices depend on each
+/// arrival.
 const WELL_KNOWN: u8 = 4;
 
 /// How a node came to its value.
@@ -49,7 +51,7 @@ struct LevelValues<const W: usize> {
     /// Room for values before smoothing: for those of all nodes, at level 0 for those of the nodes around the one that
     /// is being smoothed. Empty where a level is not smoothed.
     rough: Vec<Row<W>>,
-    /// Number of known neighbours of each node, if they take part in what is pushed.
+    /// Number of known neighbours of each node, 255 for more than that.
     known_around: Vec<u8>,
     /// Nodes whose value has changed in this update.
     changed: Marks,
@@ -302,9 +304,9 @@ impl<const W: usize> PushPull<W> {
             }
             let Some(group) = group.checked_sub(lag) else { continue };
             for node in smooths.group(group) {
-                smoothed(&mut row, level, rough, node, self.range);
+                let differs = smoothed(&mut rows[node], level, rough, node, self.range);
                 let before = std::mem::replace(&mut state[node], State::Pushed);
-                if replace(&mut rows[node], &row) || before == State::Without {
+                if differs || before == State::Without {
                     changed.insert(node);
                 }
             }
@@ -392,8 +394,15 @@ fn interpolated<const W: usize>(
 
 /// The value of a node after smoothing. All linked neighbours have values, for they are joined to each other; where
 /// there is none, the node's own stands for it. Node n is row n of `rough`, modulo their number.
+/// Says whether `to` had other bits before.
 #[inline]
-fn smoothed<const W: usize>(to: &mut Row<W>, level: &Level, rough: &[Row<W>], node: usize, range: Range) {
+fn smoothed<const W: usize>(
+    to: &mut Row<W>,
+    level: &Level,
+    rough: &[Row<W>],
+    node: usize,
+    range: Range,
+) -> bool {
     let own = node % rough.len();
     match level.neighbours(node) {
         Some(neighbours) => {
@@ -403,13 +412,14 @@ fn smoothed<const W: usize>(to: &mut Row<W>, level: &Level, rough: &[Row<W>], no
                 let place = if place >= rough.len() { place - rough.len() } else { place };
                 &rough[if place >= rough.len() { place - rough.len() } else { place }]
             };
-            smooth(to, &rough[own], neighbours.map(place), range);
+            let [a, b, c, d, e, f] = neighbours;
+            smooth(to, &rough[own], [place(a), place(b), place(c), place(d), place(e), place(f)], range)
         }
         None => {
             // Only above level 0, where each node has its own row.
             let means: [Row<W>; DIRECTIONS] =
                 std::array::from_fn(|direction| linked(level, rough, node, direction, range));
-            smooth(to, &rough[node], means.each_ref(), range);
+            smooth(to, &rough[node], means.each_ref(), range)
         }
     }
 }

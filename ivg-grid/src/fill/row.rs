@@ -98,12 +98,23 @@ pub(super) fn interpolate<const W: usize>(
 }
 
 /// A quarter of a value and three quarters of the mean of its six neighbours, as in [`mean`]: eight terms in a tree,
-/// as in [`interpolate`].
+/// as in [`interpolate`]. Says whether `to` had other bits before.
 #[inline]
-pub(super) fn smooth<const W: usize>(to: &mut Row<W>, own: &Row<W>, neighbours: [&Row<W>; 6], range: Range) {
+pub(super) fn smooth<const W: usize>(
+    to: &mut Row<W>,
+    own: &Row<W>,
+    neighbours: [&Row<W>; 6],
+    range: Range,
+) -> bool {
     let [a, b, c, d, e, f] = neighbours;
-    write(to, |i| 0.125 * (((a[i] + b[i]) + (own[i] + own[i])) + ((c[i] + d[i]) + (e[i] + f[i]))));
-    range.mend(to, &[own, own, a, b, c, d, e, f]);
+    let value = |i: usize| 0.125 * (((a[i] + b[i]) + (own[i] + own[i])) + ((c[i] + d[i]) + (e[i] + f[i])));
+    if range == Range::Ordinary {
+        return exchange(to, value);
+    }
+    let mut row = *own;
+    write(&mut row, value);
+    range.mend(&mut row, &[own, own, a, b, c, d, e, f]);
+    replace(to, &row)
 }
 
 #[inline(always)]
@@ -116,8 +127,15 @@ fn write<const W: usize>(to: &mut Row<W>, value: impl Fn(usize) -> f32) {
 /// Stores a row and says whether it has other bits than the one before.
 #[inline]
 pub(super) fn replace<const W: usize>(to: &mut Row<W>, row: &Row<W>) -> bool {
+    exchange(to, |i| row[i])
+}
+
+/// Stores numbers and says whether any has other bits than the one before.
+#[inline(always)]
+fn exchange<const W: usize>(to: &mut Row<W>, value: impl Fn(usize) -> f32) -> bool {
     let mut differing = 0;
-    for (to, &new) in to.iter_mut().zip(row) {
+    for (i, to) in to.iter_mut().enumerate() {
+        let new = value(i);
         differing |= to.to_bits() ^ new.to_bits();
         *to = new;
     }

@@ -321,3 +321,66 @@ fn a_missing_vertex_is_the_mean_of_its_six_neighbours() {
     let filled = fill(&grid, &FillOptions::BEST).vectors()[13][0][0][0];
     assert!((filled - 13.0).abs() < 13.0 * 8.0 * f32::EPSILON, "{filled}");
 }
+
+/// What smoothing makes of the values before it, computed one vertex after the other.
+fn smoothed(rough: &IrradianceGrid) -> Vec<f32> {
+    let dims = rough.lattice().dims.map(usize::from);
+    let strides = [1, dims[0], dims[0] * dims[1]];
+    let known = |index: usize| rough.is_received(index) && rough.is_valid(index);
+    let value = |index: usize| rough.vectors()[index][3][1][2];
+    (0..rough.vertex_count())
+        .map(|index| {
+            let neighbours: [Option<usize>; 6] = std::array::from_fn(|direction| {
+                let (axis, up) = (direction / 2, direction % 2 == 1);
+                let at = index / strides[axis] % dims[axis];
+                let exists = if up { at + 1 < dims[axis] } else { at > 0 };
+                let other =
+                    if up { index.wrapping_add(strides[axis]) } else { index.wrapping_sub(strides[axis]) };
+                let low = index.min(other);
+                let open = exists
+                    && rough.is_valid(index)
+                    && rough.is_valid(other)
+                    && rough.blocked_edges()[low] >> axis & 1 == 0;
+                open.then_some(other)
+            });
+            if known(index)
+                || !rough.is_valid(index)
+                || neighbours.iter().flatten().filter(|&&other| known(other)).count() >= 4
+            {
+                return value(index);
+            }
+            let own = value(index);
+            let [a, b, c, d, e, f] = neighbours.map(|other| other.map_or(own, value));
+            0.125 * (((a + b) + (own + own)) + ((c + d) + (e + f)))
+        })
+        .collect()
+}
+
+#[test]
+fn smoothing_takes_the_values_before_it_in_lattices_of_many_layers() {
+    // Larger than what is held of a layer and its neighbours.
+    for dims in [[12, 11, 10], [70, 3, 4], [2, 3, 90], [2, 2, 2], [1, 9, 80]] {
+        let mut grid = open_grid(dims);
+        let mut filled = FilledGrid::new(grid.clone(), FillOptions::BEST);
+        for index in 0..grid.vertex_count() {
+            let wall = u8::from(index % 13 == 4) | u8::from(index % 17 == 5) << 2;
+            grid.set_blocked_edges(index, wall);
+            filled.set_blocked_edges(index, wall);
+        }
+        let mut order: Vec<usize> = (0..grid.vertex_count()).collect();
+        order.sort_by_key(|&index| (index as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29));
+        for request in order.chunks(order.len().div_ceil(8)) {
+            for &index in request {
+                let vectors = [[[(index as f32 * 0.7).sin(); 3]; 3]; 6];
+                grid.set(index, &vectors);
+                filled.set(index, &vectors);
+            }
+            let rough = fill(&grid, &FillOptions { neighbours: true, smoothing: Smoothing::Nowhere });
+            let expected = smoothed(&rough);
+            let found = filled.grid().vectors().iter().map(|vectors| vectors[3][1][2]);
+            // These walls leave a way to every vertex: nothing is a guess, which would not be smoothed.
+            let differing = found.zip(&expected).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+            assert_eq!(differing, 0, "{dims:?} with {} received", grid.received_count());
+        }
+    }
+}

@@ -192,3 +192,18 @@ fn events_are_taken_over_and_stale_ones_leave_no_trace() {
     refused.expect("a sound file");
     assert_eq!(other.received_count(), 0);
 }
+
+#[test]
+fn what_becomes_known_counts_though_its_value_stays() {
+    // Blocks of two: 0, missing, missing, 64. The second gets 0 from its known neighbour, and then receives just that;
+    // for the third it is now a known neighbour too.
+    let mut received = open_grid([8, 1, 1]);
+    received.set(0, &[[[0.0; 3]; 3]; 6]);
+    received.set(7, &[[[64.0; 3]; 3]; 6]);
+    let mut filled = FilledGrid::new(received.clone(), FillOptions::default());
+    let before = filled.grid().vectors()[4][0][0][0];
+    received.set(2, &[[[0.0; 3]; 3]; 6]);
+    filled.set(2, &[[[0.0; 3]; 3]; 6]);
+    assert_eq!(bits(filled.grid()), bits(&fill(&received, &FillOptions::default())));
+    assert!(filled.grid().vectors()[4][0][0][0] < before);
+}
