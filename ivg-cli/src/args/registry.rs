@@ -25,21 +25,21 @@ pub(crate) fn order() -> impl TypedValueParser<Value = Order> {
 fn encoding_text(name: &str) -> &'static str {
     match name {
         "packed-oct24" => "24-bit octahedral direction and shared-exponent colour for each hemisphere",
-        "packed-xyz24" => "the same with 8 bits a coordinate of the direction, as Web3D 2008 has it",
-        "pair-f16" => "direction and colour of each hemisphere as half-precision floats",
-        "pair-f16x4" => "the same in fours, as GPUs take them",
-        "pair-f32" => "direction and colour of each hemisphere as f32",
-        "vectors-f32" => "all six irradiance vectors of each colour as f32, nothing is lost",
-        "sh2-28" => "spherical harmonics of the radiance, the most accurate for its size",
-        _ => "see spec/ivg.md",
+        "packed-xyz24" => "The same with 8 bits a coordinate of the direction, as Web3D 2008 has it",
+        "pair-f16" => "Direction and colour of each hemisphere as half-precision floats",
+        "pair-f16x4" => "The same in fours, as GPUs take them",
+        "pair-f32" => "Direction and colour of each hemisphere as f32",
+        "vectors-f32" => "All six irradiance vectors of each colour as f32, nothing is lost",
+        "sh2-28" => "Spherical harmonics of the radiance, the most accurate for its size",
+        _ => "See spec/ivg.md",
     }
 }
 
 fn order_text(name: &str) -> &'static str {
     match name {
-        "slices" => "some vertices of every slice across the longest axis, in pseudo-random order",
-        "octree" => "evenly spread over the volume, whatever part has arrived",
-        "explicit" => "what matters most first, found by measuring; each bundle lists its vertices",
-        _ => "see spec/ivg.md",
+        "slices" => "Some vertices of every slice across the longest axis, in pseudo-random order",
+        "octree" => "Evenly spread over the volume, whatever part has arrived",
+        "explicit" => "What matters most first, found by measuring; each bundle lists its vertices",
+        _ => "See spec/ivg.md",
     }
 }

@@ -91,6 +91,9 @@ struct Coverage {
     vertices: Vec<Brought>,
 }
 
+/// Whether a vertex breaks a rule.
+type Breaks = fn(&Brought) -> bool;
+
 /// What is known of a vertex.
 #[derive(Clone, Copy, Default)]
 struct Brought {
@@ -126,7 +129,7 @@ impl Coverage {
     }
 
     fn warn(&self, warnings: &mut Vec<String>) {
-        let rules: [(&str, fn(&Brought) -> bool); 2] = [
+        let rules: [(&str, Breaks); 2] = [
             ("in no bundle although not inside geometry", |vertex| !vertex.once && !vertex.inside),
             ("in more than one bundle", |vertex| vertex.again),
         ];
