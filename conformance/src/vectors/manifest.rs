@@ -1,8 +1,10 @@
 //! The list of all vectors for readers in other languages.
 
-use super::Vector;
+use super::{Format, Vector};
+use ivg_format::{Event, Limits, VertexValues, decode_all};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 
 /// The file `manifest.json`.
 #[derive(Serialize)]
@@ -26,6 +28,8 @@ struct Entry<'a> {
     code: Option<u16>,
     #[serde(skip_serializing_if = "Option::is_none")]
     twin: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    values: Option<String>,
     why: &'a str,
 }
 
@@ -48,16 +52,45 @@ pub fn manifest(vectors: &[Vector]) -> String {
 
 fn entry(vector: &Vector) -> Entry<'_> {
     let format = vector.format.name();
-    let digest = Sha256::digest(&vector.bytes);
     Entry {
         id: format!("{format}/{}", vector.name),
         file: vector.file(),
         bytes: vector.bytes.len(),
-        sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+        sha256: hash(&vector.bytes),
         op: "decode",
         verdict: vector.verdict.name(),
         code: vector.code,
         twin: vector.twin.map(|twin| format!("{format}/{twin}")),
+        values: values(vector),
         why: vector.why,
     }
+}
+
+fn hash(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The SHA-256 of all light of an accepted `.ivg` file: for each received vertex, by ascending linear index, the index as
+/// u64 and its numbers as f32, 54 of vectors (hemisphere, channel, coordinate) or 27 of harmonics (channel, coefficient).
+fn values(vector: &Vector) -> Option<String> {
+    if vector.format != Format::Ivg || vector.code.is_some() {
+        return None;
+    }
+    let mut received = BTreeMap::new();
+    decode_all(&vector.bytes, &Limits::default(), |event| {
+        if let Event::Corners(bundle) | Event::Bundle(bundle) = event {
+            received.extend(bundle.iter());
+        }
+    })
+    .ok()?;
+    let mut bytes = Vec::new();
+    for (vertex, values) in received {
+        bytes.extend(vertex.to_le_bytes());
+        let numbers: Vec<f32> = match values {
+            VertexValues::Vectors(vectors) => vectors.into_iter().flatten().flatten().collect(),
+            VertexValues::Radiance(radiance) => radiance.into_iter().flatten().collect(),
+        };
+        bytes.extend(numbers.into_iter().flat_map(f32::to_le_bytes));
+    }
+    Some(hash(&bytes))
 }
