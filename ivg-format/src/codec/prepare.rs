@@ -6,12 +6,11 @@ use super::harmonics::RATIOS;
 use crate::encoding::Encoding;
 use crate::header::SCALE_EXPONENTS;
 use crate::quant::direction::Octahedral24;
-use crate::quant::pack::{DirectionQuantiser, PackedHemisphere, pack_all};
+use crate::quant::pack::{DirectionQuantiser, PackedVertex, pack_all};
 use crate::quant::pair::{HalfDirection, SingleDirection};
 use crate::quant::xyz::Xyz24;
 use crate::quant::{floor_log2, half, power_of_two_f64, ratio, rgb9e5};
 use crate::values::{HemisphereVectors, RadianceHarmonics, Values};
-use alloc::vec;
 use alloc::vec::Vec;
 
 /// Vertices that are packed at once.
@@ -49,7 +48,7 @@ pub(crate) enum Prepared<'a> {
 
 /// Direction and colour of all hemispheres.
 pub(crate) struct Hemispheres<Code> {
-    vertices: Vec<[PackedHemisphere<Code>; HEMISPHERES]>,
+    vertices: Vec<PackedVertex<Code>>,
     scale_exponent: i16,
 }
 
@@ -99,30 +98,39 @@ impl<'a> Prepared<'a> {
         let vertices: &[u64] = &vertices.collect::<Vec<_>>();
         match self {
             Self::Packed(hemispheres) => {
-                hemispheres.colours(vertices, |colour| {
-                    out.extend_from_slice(&rgb9e5::encode_f64(colour).to_le_bytes());
+                hemispheres.write_colours(vertices, out, |colours| {
+                    rgb9e5::encode_all(colours).map(u32::to_le_bytes)
                 });
-                hemispheres.directions(vertices, |code| out.extend_from_slice(&code.to_le_bytes()[..3]));
+                hemispheres.write_directions(vertices, out, |code| {
+                    let [low, middle, high, _] = code.to_le_bytes();
+                    [low, middle, high]
+                });
             }
-            Self::Half { hemispheres, padded } => {
-                let padding: &[u8] = if *padded { &[0; 2] } else { &[] };
-                let mut three = |bits: [u16; 3]| {
-                    out.extend(bits.iter().flat_map(|bits| bits.to_le_bytes()));
-                    out.extend_from_slice(padding);
-                };
-                // To binary32 first: no hardware rounds binary64 to binary16.
-                hemispheres.colours(vertices, |colour| three(colour.map(|c| half::from_f32(c as f32))));
-                hemispheres.directions(vertices, |&code| three(code));
+            // To binary32 first: no hardware rounds binary64 to binary16.
+            Self::Half { hemispheres, padded: false } => {
+                let bytes = |[x, y, z]: [u16; 3]| little_endian::<2, 6>([x, y, z].map(u16::to_le_bytes));
+                hemispheres.write_colours(vertices, out, |colours| {
+                    by_hemisphere(colours, |c| half::from_f32(c as f32)).map(bytes)
+                });
+                hemispheres.write_directions(vertices, out, bytes);
+            }
+            Self::Half { hemispheres, padded: true } => {
+                let bytes = |[x, y, z]: [u16; 3]| little_endian::<2, 8>([x, y, z].map(u16::to_le_bytes));
+                hemispheres.write_colours(vertices, out, |colours| {
+                    by_hemisphere(colours, |c| half::from_f32(c as f32)).map(bytes)
+                });
+                hemispheres.write_directions(vertices, out, bytes);
             }
             Self::Single(hemispheres) => {
-                let mut three = |numbers: [f32; 3]| out.extend(numbers.iter().flat_map(|c| c.to_le_bytes()));
-                hemispheres.colours(vertices, |colour| three(colour.map(|c| c as f32)));
-                hemispheres.directions(vertices, |&code| three(code));
+                let bytes = |numbers: [f32; 3]| little_endian::<4, 12>(numbers.map(f32::to_le_bytes));
+                hemispheres
+                    .write_colours(vertices, out, |colours| by_hemisphere(colours, |c| c as f32).map(bytes));
+                hemispheres.write_directions(vertices, out, bytes);
             }
             Self::Vectors(vectors) => {
                 for &vertex in vertices {
-                    let components = vectors[vertex as usize].as_flattened().as_flattened();
-                    out.extend(components.iter().flat_map(|c| c.to_le_bytes()));
+                    let components = vectors[vertex as usize].map(|v| v.map(|v| v.map(f32::to_le_bytes)));
+                    out.extend_from_slice(components.as_flattened().as_flattened().as_flattened());
                 }
             }
             Self::Harmonics { vertices: all, .. } => {
@@ -133,20 +141,49 @@ impl<'a> Prepared<'a> {
     }
 }
 
-impl<Code> Hemispheres<Code> {
-    /// Every colour of some vertices, divided by the scale: exact.
-    fn colours(&self, vertices: &[u64], mut each: impl FnMut([f64; 3])) {
+impl<Code: Copy> Hemispheres<Code> {
+    /// Appends the colours of some vertices, divided by the scale, which is exact; `bytes` makes those of each hemisphere.
+    #[inline(always)]
+    fn write_colours<const BYTES: usize>(
+        &self,
+        vertices: &[u64],
+        out: &mut Vec<u8>,
+        bytes: impl Fn(&[[f64; HEMISPHERES]; 3]) -> [[u8; BYTES]; HEMISPHERES],
+    ) {
         let scale = power_of_two_f64(-i32::from(self.scale_exponent));
-        for hemisphere in vertices.iter().flat_map(|&vertex| &self.vertices[vertex as usize]) {
-            each(hemisphere.colour.map(|c| c * scale));
+        out.reserve(vertices.len() * HEMISPHERES * BYTES);
+        for &vertex in vertices {
+            let colours =
+                self.vertices[vertex as usize].colours.map(|component| component.map(|c| c * scale));
+            out.extend_from_slice(bytes(&colours).as_flattened());
         }
     }
 
-    /// Every direction of some vertices.
-    fn directions(&self, vertices: &[u64], each: impl FnMut(&Code)) {
-        let hemispheres = vertices.iter().flat_map(|&vertex| &self.vertices[vertex as usize]);
-        hemispheres.map(|hemisphere| &hemisphere.direction).for_each(each);
+    /// Appends the directions of some vertices.
+    #[inline(always)]
+    fn write_directions<const BYTES: usize>(
+        &self,
+        vertices: &[u64],
+        out: &mut Vec<u8>,
+        bytes: impl Fn(Code) -> [u8; BYTES] + Copy,
+    ) {
+        out.reserve(vertices.len() * HEMISPHERES * BYTES);
+        for &vertex in vertices {
+            out.extend_from_slice(self.vertices[vertex as usize].directions.map(bytes).as_flattened());
+        }
     }
+}
+
+/// The colour of each hemisphere, its components as `number` makes them.
+fn by_hemisphere<T>(colours: &[[f64; HEMISPHERES]; 3], number: impl Fn(f64) -> T) -> [[T; 3]; HEMISPHERES] {
+    core::array::from_fn(|h| colours.each_ref().map(|component| number(component[h])))
+}
+
+/// The bytes of three numbers, and zeros behind them.
+fn little_endian<const NUMBER: usize, const ALL: usize>(numbers: [[u8; NUMBER]; 3]) -> [u8; ALL] {
+    let mut bytes = [0; ALL];
+    bytes.iter_mut().zip(numbers.as_flattened()).for_each(|(to, from)| *to = *from);
+    bytes
 }
 
 /// The first hemisphere of a vertex with a number that is not finite.
@@ -165,64 +202,65 @@ fn pack<Q: DirectionQuantiser>(
     // Colours of binary32 are not scaled (IVG-HDR-04).
     let highest = if storable == f32::MAX { 0 } else { *SCALE_EXPONENTS.end() };
     let limit = f64::from(storable) * power_of_two_f64(i32::from(highest));
-    let mut packed = vec![[PackedHemisphere::default(); HEMISPHERES]; vectors.len()];
+    let mut packed = Vec::with_capacity(vectors.len());
     let mut largest = 0.0f64;
-    for (chunk, (vectors, packed)) in vectors.chunks(VERTICES).zip(packed.chunks_mut(VERTICES)).enumerate() {
-        let most = match (<&[_; VERTICES]>::try_from(vectors), <&mut [_; VERTICES]>::try_from(&mut *packed)) {
-            (Ok(vectors), Ok(packed)) => pack_vertices::<Q, VERTICES>(vectors, packed),
-            _ => vectors.iter().zip(&mut *packed).fold(0.0, |most: f64, (vector, packed)| {
-                let one = core::slice::from_mut(packed).as_chunks_mut::<1>().0;
-                most.max(pack_vertices::<Q, 1>(&[*vector], &mut one[0]))
-            }),
-        };
-        let finite = vectors.as_flattened().as_flattened().as_flattened();
-        if most > limit || !finite.iter().fold(true, |all, c| all & c.is_finite()) {
-            return Err(fault(chunk * VERTICES, vectors, packed, limit));
-        }
-        largest = largest.max(most);
+    let (chunks, rest) = vectors.as_chunks::<VERTICES>();
+    let (ones, _) = rest.as_chunks::<1>();
+    for chunk in chunks {
+        largest = append::<Q, VERTICES>(&mut packed, chunk, largest, limit)?;
+    }
+    for one in ones {
+        largest = append::<Q, 1>(&mut packed, one, largest, limit)?;
     }
     Ok(Hemispheres { vertices: packed, scale_exponent: settle(largest, storable, fixed)? })
 }
 
-/// Packs every hemisphere of some vertices; the largest component of a colour.
-fn pack_vertices<Q: DirectionQuantiser, const N: usize>(
+/// Packs every hemisphere of some vertices, which must be finite and their colours no more than the limit; the largest
+/// component of a colour so far.
+fn append<Q: DirectionQuantiser, const N: usize>(
+    packed: &mut Vec<PackedVertex<Q::Code>>,
     vectors: &[HemisphereVectors; N],
-    packed: &mut [[PackedHemisphere<Q::Code>; HEMISPHERES]; N],
-) -> f64 {
-    let mut one = [PackedHemisphere::default(); N];
-    let mut largest = 0.0f64;
+    largest: f64,
+    limit: f64,
+) -> Result<f64, Fault> {
+    let mut vertices = [PackedVertex::default(); N];
     for hemisphere in 0..HEMISPHERES {
-        pack_all::<Q, N>(vectors, hemisphere, &mut one);
-        for (vertex, one) in packed.iter_mut().zip(&one) {
-            vertex[hemisphere] = *one;
-            largest = one.colour.iter().fold(largest, |most, &c| most.max(c));
+        pack_all::<Q, N>(vectors, hemisphere, &mut vertices);
+    }
+    let components = vectors.as_flattened().as_flattened().as_flattened();
+    let finite = components.iter().fold(true, |all, c| all & c.is_finite());
+    let mut most = [largest; HEMISPHERES];
+    for colours in vertices.iter().flat_map(|vertex| &vertex.colours) {
+        for (most, &c) in most.iter_mut().zip(colours) {
+            *most = if c > *most { c } else { *most };
         }
     }
-    largest
+    let most = most.iter().fold(largest, |most, &c| most.max(c));
+    if !finite || most > limit {
+        return Err(fault(packed.len(), vectors, &vertices, limit));
+    }
+    packed.extend_from_slice(&vertices);
+    Ok(most)
 }
 
 /// What is wrong with the first vertex and hemisphere of which something is.
 fn fault<Code>(
     first: usize,
     vectors: &[HemisphereVectors],
-    packed: &[[PackedHemisphere<Code>; HEMISPHERES]],
+    packed: &[PackedVertex<Code>],
     limit: f64,
 ) -> Fault {
-    let each = (first..).zip(vectors.iter().zip(packed)).flat_map(|(vertex, (vectors, packed))| {
-        vectors.iter().zip(packed).enumerate().map(move |(h, (vectors, packed))| (vertex, h, vectors, packed))
-    });
-    let mut found = Fault::Quantity;
-    for (vertex, hemisphere, vectors, packed) in each {
-        if !vectors.as_flattened().iter().all(|c| c.is_finite()) {
-            found = Fault::NotFinite(vertex, hemisphere);
-            break;
-        }
-        if packed.colour.iter().any(|&c| c > limit) {
-            found = Fault::TooLarge(vertex, hemisphere);
-            break;
+    for (vertex, (vectors, packed)) in (first..).zip(vectors.iter().zip(packed)) {
+        for (hemisphere, vectors) in vectors.iter().enumerate() {
+            if !vectors.as_flattened().iter().all(|c| c.is_finite()) {
+                return Fault::NotFinite(vertex, hemisphere);
+            }
+            if packed.colours.iter().any(|component| component[hemisphere] > limit) {
+                return Fault::TooLarge(vertex, hemisphere);
+            }
         }
     }
-    found
+    unreachable!("some hemisphere was at fault")
 }
 
 /// Means and codes of the ratios to them (IVG-SH-06).

@@ -7,7 +7,9 @@
 //! Encoding finds the nearest code; the angle to it is at most √2/2047 rad, 0.0396°.
 
 use super::pack::DirectionQuantiser;
-use super::{DirectionCode, normalised, unit};
+use super::{DirectionCode, unit};
+
+mod nearest;
 
 /// The quantiser: for [`super::pack::pack_hemisphere`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,48 +25,17 @@ const FORBIDDEN: u32 = 4095;
 /// the lowest. `None` if the vector is zero or not finite.
 #[must_use]
 pub fn encode_octahedral24(vector: [f64; 3]) -> Option<u32> {
-    nearest(vector, vector, |_| true)
+    nearest::nearest(vector)
 }
 
 /// As [`encode_octahedral24`], among the codes whose direction lies strictly in the hemisphere around
 /// coordinate axis `axis` (0 to 2), on its positive or negative side (IVG-PACK-03).
 #[must_use]
 pub fn encode_octahedral24_in_hemisphere(vector: [f64; 3], axis: usize, positive: bool) -> Option<u32> {
-    let sign = if positive { 1 } else { -1 };
-    // Where to look: the vector itself, or, if it lies on or below the tangent plane, the place just above it.
-    let mut lifted = vector;
-    let component = lifted.get_mut(axis)?;
-    let least = vector.iter().map(|c| c.abs()).sum::<f64>() / f64::from(SCALE);
-    *component = f64::from(sign) * (f64::from(sign) * *component).max(least);
-    nearest(vector, lifted, |folded| folded.get(axis).is_some_and(|&c| c * sign >= 1))
-}
-
-/// The code around `place` that comes nearest to `vector` among those that `allowed` accepts.
-fn nearest(vector: [f64; 3], place: [f64; 3], allowed: impl Fn(&[i32; 3]) -> bool) -> Option<u32> {
-    let [x, y, z] = normalised(place)?;
-    let goal = normalised(vector)?;
-    let scale = f64::from(SCALE) / (x.abs() + y.abs() + z.abs());
-    let (mut u, mut v) = (x * scale, y * scale);
-    if z < 0.0 {
-        let (a, b) = (f64::from(SCALE) - v.abs(), f64::from(SCALE) - u.abs());
-        (u, v) = (if x < 0.0 { -a } else { a }, if y < 0.0 { -b } else { b });
-    }
-    let (u, v) = (libm::floor(u) as i32, libm::floor(v) as i32);
-    let mut best: Option<(f64, u32)> = None;
-    for v in (v - 1).max(-SCALE)..=(v + 2).min(SCALE) {
-        for u in (u - 1).max(-SCALE)..=(u + 2).min(SCALE) {
-            let folded = fold(u, v);
-            if !allowed(&folded) {
-                continue;
-            }
-            let [a, b, c] = folded.map(f64::from);
-            let cosine = (a * goal[0] + b * goal[1] + c * goal[2]) / libm::sqrt(a * a + b * b + c * c);
-            if best.is_none_or(|(most, _)| cosine > most) {
-                best = Some((cosine, lowest_code(u, v)));
-            }
-        }
-    }
-    best.map(|(_, code)| code)
+    let component = *vector.get(axis)? * if positive { 1.0 } else { -1.0 };
+    let whole = vector.iter().map(|c| c.abs() / f64::from(SCALE)).sum();
+    // At least 1 on the octahedron: then so is every code around it.
+    if component >= whole { nearest::nearest(vector) } else { nearest::nearest_above(vector, axis, positive) }
 }
 
 /// The lowest code of the direction at (u, v): on the rim of the map, places mirrored in its middle are one
@@ -139,6 +110,16 @@ impl DirectionQuantiser for Octahedral24 {
 
     fn decode(code: &u32) -> [f32; 3] {
         decode_valid(*code)
+    }
+
+    fn encode_all<const N: usize>(
+        vectors: &[[f64; N]; 3],
+        axis: usize,
+        positive: bool,
+        codes: &mut [u32; N],
+        along: &mut [f64; N],
+    ) {
+        nearest::encode_all(vectors, axis, positive, codes, along);
     }
 }
 

@@ -34,15 +34,28 @@ pub trait DirectionQuantiser {
         codes: &mut [Self::Code; N],
         along: &mut [f64; N],
     ) {
-        let mut unit = [0.0; 3];
-        unit[axis] = if positive { 1.0 } else { -1.0 };
         for (n, (code, along)) in codes.iter_mut().zip(along).enumerate() {
-            let vector = vectors.each_ref().map(|c| c[n]);
-            let found = Self::encode(vector, axis, positive).or_else(|| Self::encode(unit, axis, positive));
-            *code = found.unwrap_or_default();
+            *code = Self::encode_or_axis(vectors.each_ref().map(|c| c[n]), axis, positive);
             *along = f64::from(Self::decode(code)[axis]);
         }
     }
+
+    /// As [`DirectionQuantiser::encode`]; the axis for a vector that has no direction.
+    fn encode_or_axis(vector: [f64; 3], axis: usize, positive: bool) -> Self::Code {
+        let mut unit = [0.0; 3];
+        unit[axis] = if positive { 1.0 } else { -1.0 };
+        let found = Self::encode(vector, axis, positive).or_else(|| Self::encode(unit, axis, positive));
+        found.unwrap_or_default()
+    }
+}
+
+/// The hemispheres of a vertex, each as a direction and a colour.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PackedVertex<Code> {
+    /// Directions, by hemisphere.
+    pub(crate) directions: [Code; 6],
+    /// Components of colours, `[rgb][hemisphere]`, not negative.
+    pub(crate) colours: [[f64; 6]; 3],
 }
 
 /// A hemisphere's direction code and colour.
@@ -71,29 +84,38 @@ pub fn pack_hemisphere<Q: DirectionQuantiser>(
     assert!(hemisphere < 6, "there are six hemispheres, not {}", hemisphere + 1);
     let mut vertex = HemisphereVectors::default();
     vertex[hemisphere] = *vectors;
-    let mut packed = [Default::default()];
+    let mut packed = [PackedVertex::default()];
     pack_all::<Q, 1>(&[vertex], hemisphere, &mut packed);
-    vectors.as_flattened().iter().all(|c| c.is_finite()).then_some(packed[0])
+    let [PackedVertex { directions, colours }] = packed;
+    let colour = colours.map(|component| component[hemisphere]);
+    let finite = vectors.as_flattened().iter().all(|c| c.is_finite());
+    finite.then_some(PackedHemisphere { direction: directions[hemisphere], colour })
 }
 
 /// Packs one hemisphere of `N` vertices, all of whose components are finite; what becomes of others is of no use.
 pub(crate) fn pack_all<Q: DirectionQuantiser, const N: usize>(
     vertices: &[HemisphereVectors; N],
     hemisphere: usize,
-    packed: &mut [PackedHemisphere<Q::Code>; N],
+    packed: &mut [PackedVertex<Q::Code>; N],
 ) {
     let (axis, positive) = (hemisphere / 2, hemisphere.is_multiple_of(2));
     let mut sums = [[0.0; N]; 3];
     let mut components = [[0.0; N]; 3];
     let mut squares = [[0.0; N]; 3];
-    for (n, vertex) in vertices.iter().enumerate() {
-        let vectors = vertex[hemisphere].map(|v| v.map(f64::from));
-        for i in 0..3 {
-            sums[i][n] = vectors[0][i] + vectors[1][i] + vectors[2][i];
-        }
-        for (k, v) in vectors.iter().enumerate() {
-            components[k][n] = v[axis];
-            squares[k][n] = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    let [sum_x, sum_y, sum_z] = &mut sums;
+    for n in 0..N {
+        let [[rx, ry, rz], [gx, gy, gz], [bx, by, bz]] = vertices[n][hemisphere];
+        let (rx, ry, rz) = (f64::from(rx), f64::from(ry), f64::from(rz));
+        let (gx, gy, gz) = (f64::from(gx), f64::from(gy), f64::from(gz));
+        let (bx, by, bz) = (f64::from(bx), f64::from(by), f64::from(bz));
+        (sum_x[n], sum_y[n], sum_z[n]) = (rx + gx + bx, ry + gy + by, rz + gz + bz);
+        squares[0][n] = rx * rx + ry * ry + rz * rz;
+        squares[1][n] = gx * gx + gy * gy + gz * gz;
+        squares[2][n] = bx * bx + by * by + bz * bz;
+    }
+    for (k, components) in components.iter_mut().enumerate() {
+        for (component, vertex) in components.iter_mut().zip(vertices) {
+            *component = f64::from(vertex[hemisphere][k][axis]);
         }
     }
     let mut codes = [Default::default(); N];
@@ -102,13 +124,14 @@ pub(crate) fn pack_all<Q: DirectionQuantiser, const N: usize>(
     let [x, y, z] = &sums;
     let mut colours = components;
     for (colour, squares) in colours.iter_mut().zip(&squares) {
-        let mut capped = false;
         for n in 0..N {
-            let quotient =
-                if (x[n] == 0.0) & (y[n] == 0.0) & (z[n] == 0.0) { 0.0 } else { colour[n] / along[n] };
-            colour[n] = quotient.max(0.0);
-            capped |= may_be_capped(colour[n], squares[n]);
+            let quotient = colour[n] / along[n];
+            // Vectors that cancel have no direction and no colour.
+            let light = (quotient > 0.0) & ((x[n] != 0.0) | (y[n] != 0.0) | (z[n] != 0.0));
+            colour[n] = if light { quotient } else { 0.0 };
         }
+        let any = |any, (&colour, &squared)| any | u64::from(may_be_capped(colour, squared));
+        let capped = colour.iter().zip(squares).fold(0, any) != 0;
         if capped {
             for (colour, &squared) in colour.iter_mut().zip(squares) {
                 if may_be_capped(*colour, squared) {
@@ -118,7 +141,10 @@ pub(crate) fn pack_all<Q: DirectionQuantiser, const N: usize>(
         }
     }
     for (n, packed) in packed.iter_mut().enumerate() {
-        *packed = PackedHemisphere { direction: codes[n], colour: colours.each_ref().map(|c| c[n]) };
+        packed.directions[hemisphere] = codes[n];
+        for (component, colours) in packed.colours.iter_mut().zip(&colours) {
+            component[hemisphere] = colours[n];
+        }
     }
 }
 

@@ -41,14 +41,37 @@ pub fn encode(ratio: f64, which: usize) -> i8 {
 /// that is 0 (IVG-SH-06).
 #[inline(always)]
 pub(crate) fn encode_all(coefficients: &[f32; 8], mean: f32) -> [u8; 8] {
-    let above = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| step(which, false));
-    let below = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| step(which, true));
+    /// Sums with 1.5 × 2^23 have no digits behind the point; the lowest bits are the whole number.
+    const WHOLE: f32 = 12_582_912.0;
+    /// In binary32 a quotient of up to 127 is off by less than 127 × 2^-21: nearer to the middle between two whole
+    /// numbers than this, it is found in binary64.
+    const DOUBT: f32 = 0.5 - 1.0 / 8192.0;
+    let above = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| 1.0 / step(which, false));
+    let below = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| 1.0 / step(which, true));
+    let inverse = 1.0 / mean;
+    let mut codes = [0; 8];
+    let mut doubt = false;
+    for n in 0..8 {
+        let negative = coefficients[n] < 0.0;
+        let quotient = coefficients[n] * inverse * if negative { below[n] } else { above[n] };
+        let quotient = if quotient < 127.0 { quotient } else { 127.0 };
+        let quotient = if quotient > -127.0 { quotient } else { -127.0 };
+        let whole = quotient + WHOLE;
+        codes[n] = whole.to_bits() as u8;
+        // Not a number is a doubt, too: that is what a mean of 0 gives, and one too small for its inverse.
+        doubt |= !((quotient - (whole - WHOLE)).abs() < DOUBT);
+    }
+    if doubt | !inverse.is_finite() { encode_exactly(coefficients, mean) } else { codes }
+}
+
+#[cold]
+fn encode_exactly(coefficients: &[f32; 8], mean: f32) -> [u8; 8] {
     // What is divided by infinity is 0, so that a mean of 0 gives codes of 0.
     let mean = if mean > 0.0 { f64::from(mean) } else { f64::INFINITY };
     core::array::from_fn(|n| {
-        let step = if coefficients[n] < 0.0 { below[n] } else { above[n] };
         // The product has at most 9 + 24 bits and is exact, so that only the quotient is rounded.
-        nearest(f64::from(coefficients[n]), mean * f64::from(step)).cast_unsigned()
+        let unit = mean * f64::from(step(n + 1, coefficients[n] < 0.0));
+        nearest(f64::from(coefficients[n]), unit).cast_unsigned()
     })
 }
 

@@ -36,6 +36,30 @@ pub(crate) fn encode_f64(colour: [f64; 3]) -> u32 {
     exponent_bits | round(b, exponent) << 18 | round(g, exponent) << 9 | round(r, exponent)
 }
 
+/// As [`encode_f64`], for finite colours that are not negative, one array for each component.
+#[inline(always)]
+pub(crate) fn encode_all<const N: usize>(colours: &[[f64; N]; 3]) -> [u32; N] {
+    /// Sums with 2^52 have no digits behind the point; the lowest bits are the whole number.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    let mantissa = |scaled: f64| {
+        let even = scaled + WHOLE;
+        // Halves went to the even neighbour; where that was the lower one, up.
+        even.to_bits() as u32 + u32::from(scaled - (even - WHOLE) >= 0.5)
+    };
+    let lesser = |one: f64, other: f64| if one < other { one } else { other };
+    core::array::from_fn(|n| {
+        let [r, g, b] = colours.each_ref().map(|c| lesser(c[n], f64::from(LARGEST)));
+        let largest = if r > g { r } else { g };
+        let largest = if b > largest { b } else { largest };
+        // The exponent in the upper half of the bits; numbers below 2^-16 share the lowest.
+        let exponent = (((largest.to_bits() >> 52) as i32) - 1023 + 16).max(0);
+        let scale = |exponent: i32| f64::from_bits(((EXPONENT_OFFSET - exponent + 1023) as u64) << 52);
+        let exponent = exponent + i32::from(mantissa(largest * scale(exponent)) == 512);
+        let scale = scale(exponent);
+        (exponent as u32) << 27 | mantissa(b * scale) << 18 | mantissa(g * scale) << 9 | mantissa(r * scale)
+    })
+}
+
 /// The mantissa of `component` at `exponent`, halves rounded up. The component is not negative and the
 /// product with a power of two exact, so that truncating after adding one half rounds as it should.
 fn round(component: f64, exponent: i32) -> u32 {

@@ -365,13 +365,13 @@ quickcheck! {
         let mut vertex = HemisphereVectors::default();
         vertex[h] = channels.map(|c| direction.map(|d| d * c * scale));
         let back = read(&encoded(&[vertex], encoding), &[1]).0;
-        // Since the colour is divided by the decoded component along the axis, which is at least 0.3, the error along the
-        // direction is at most 1/0.3 as large as that of the direction; and so is the largest colour as the largest vector.
-        // A directions's length may be off as its angle is. One part in a hundred covers the second order, the roundings
-        // to binary32 and those of this test.
+        // The colour is divided by the decoded component along the axis, which is at least 0.3 less the angle: so the error
+        // along the direction is at most one over that as large as that of the direction. A direction's length may be off as
+        // its angle is. One part in a hundred covers the second order of what remains, the roundings to binary32 and those of
+        // this test.
         let (angle, step) = bounds(encoding);
         let most = channels.iter().fold(0.0f32, |a, &b| a.max(b)) * scale * length;
-        let bound = 1.01 * most * (angle * (1.0 + 1.0 / 0.3) + step + 4.0 * f32::EPSILON);
+        let bound = 1.01 * most * (angle * (1.0 + 1.0 / (0.3 - angle)) + step + 4.0 * f32::EPSILON);
         let worst = (0..3).map(|k| {
             let squared: f32 = (0..3).map(|i| (back[0][h][k][i] - vertex[h][k][i]).powi(2)).sum();
             squared.sqrt()

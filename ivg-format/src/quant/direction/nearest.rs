@@ -1,0 +1,269 @@
+//! The octahedral code nearest to a direction.
+//!
+//! Codes are the points with whole coordinates on the octahedron |x| + |y| + |z| = 2047. On a face, with all signs made
+//! positive, they form a triangular lattice whose three steps are (0, 1, −1), (1, −1, 0) and (−1, 0, 1). Seen from the centre in
+//! the direction p, a step e has the squared length |e|² − (e·p)² / |p|², and of no two steps is the product so formed positive:
+//! −1 − (y − z)(x − y) / |p|² and the other two are at most 0, since y² ≤ |p|². So no triangle of the lattice has an angle
+//! above 90°, and the nearest code is a corner of the triangle around the direction; only at the axes, where the angle is 90°,
+//! can the corner beyond the longest side be as near. Hence four candidates: with the largest coordinate left out, the
+//! corners of the square of whole numbers around the other two. The tests compare with a search of many more.
+
+use super::{Octahedral24, SCALE, fold, lowest_code};
+use crate::quant::pack::DirectionQuantiser;
+use crate::quant::{normalised, unit};
+
+/// The corners of a square cell.
+const CORNERS: [[i32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+
+/// Two codes whose squared distances differ by less than this part of them are equally near: more than rounding in
+/// binary64 makes of equal distances, and far less than any direction of a grid is known.
+const TIE: f64 = 1.0 / (1u64 << 36) as f64;
+
+/// In binary32, squared distances of up to 4 are off by less than 2^-19: what differs by less than this is decided in
+/// binary64.
+const DOUBT: f32 = 1.0 / (1u32 << 14) as f32;
+
+/// The lowest of the nearest codes; `None` for a vector without direction.
+pub(super) fn nearest(vector: [f64; 3]) -> Option<u32> {
+    let [x, y, z] = normalised(vector)?.map(f64::abs);
+    let scale = f64::from(SCALE) / (x + y + z);
+    let largest = largest_coordinate([x, y, z]);
+    let mut place = [x * scale, y * scale, z * scale];
+    place.swap(largest, 2);
+    let [a, b, c] = place;
+    let base = [libm::floor(a), libm::floor(b)];
+    let squared = a * a + b * b + c * c;
+    let distances = CORNERS.map(|[right, up]| {
+        let (x, y) = (a - base[0] - f64::from(right), b - base[1] - f64::from(up));
+        // The way from the code to the direction is r = (x, y, -x - y); its part across the direction, over the part of the
+        // code along it, is the tangent of the angle.
+        let along = (a - c) * x + (b - c) * y;
+        let across = 2.0 * ((x * x + y * y) + x * y) - along * along / squared;
+        let distance = 1.0 - along / squared;
+        across / (distance * distance)
+    });
+    let least = distances.iter().fold(f64::INFINITY, |least: f64, &distance| least.min(distance));
+    let near = CORNERS.iter().zip(distances).filter(|&(_, distance)| distance <= least * (1.0 + TIE));
+    near.map(|(&[right, up], _)| code([base[0] as i32 + right, base[1] as i32 + up], largest, vector)).min()
+}
+
+/// Which of three magnitudes is the largest; of equals, the last, then the middle one.
+fn largest_coordinate([x, y, z]: [f64; 3]) -> usize {
+    if x.max(y) <= z { 2 } else { usize::from(x <= y) }
+}
+
+/// The lowest code of a point, whose two magnitudes are given that are left when the largest, which was exchanged with the
+/// third, is left out.
+fn code([a, b]: [i32; 2], largest: usize, signs: [f64; 3]) -> u32 {
+    let mut point = [a, b, SCALE - a - b];
+    point.swap(largest, 2);
+    for (coordinate, sign) in point.iter_mut().zip(signs) {
+        *coordinate = if sign < 0.0 { -*coordinate } else { *coordinate };
+    }
+    code_of(point)
+}
+
+/// The lowest code of a point of the octahedron.
+#[inline(always)]
+fn code_of([x, y, z]: [i32; 3]) -> u32 {
+    // On the lower half, where a coordinate is 0 the map has two places.
+    let below_x = if x > 0 { SCALE - y.abs() } else { y.abs() - SCALE };
+    let below_y = if y > 0 { SCALE - x.abs() } else { x.abs() - SCALE };
+    let (u, v) = if z < 0 { (below_x, below_y) } else { (x, y) };
+    (u + SCALE) as u32 | ((v + SCALE) as u32) << 12
+}
+
+/// The lowest of the nearest codes strictly inside a hemisphere, for a direction next to its tangent plane or below it,
+/// where the nearest code of all may be outside: a search around the direction, or the place just above it.
+pub(super) fn nearest_above(vector: [f64; 3], axis: usize, positive: bool) -> Option<u32> {
+    let sign = if positive { 1 } else { -1 };
+    let mut lifted = vector;
+    let component = lifted.get_mut(axis)?;
+    let least = vector.iter().map(|c| c.abs()).sum::<f64>() / f64::from(SCALE);
+    *component = f64::from(sign) * (f64::from(sign) * *component).max(least);
+    let [x, y, z] = normalised(lifted)?;
+    let goal = normalised(vector)?;
+    let scale = f64::from(SCALE) / (x.abs() + y.abs() + z.abs());
+    let (mut u, mut v) = (x * scale, y * scale);
+    if z < 0.0 {
+        let (a, b) = (f64::from(SCALE) - v.abs(), f64::from(SCALE) - u.abs());
+        (u, v) = (if x < 0.0 { -a } else { a }, if y < 0.0 { -b } else { b });
+    }
+    let (u, v) = (libm::floor(u) as i32, libm::floor(v) as i32);
+    let mut best: Option<(f64, u32)> = None;
+    for v in (v - 1).max(-SCALE)..=(v + 2).min(SCALE) {
+        for u in (u - 1).max(-SCALE)..=(u + 2).min(SCALE) {
+            let folded = fold(u, v);
+            if folded[axis] * sign < 1 {
+                continue;
+            }
+            let [a, b, c] = folded.map(f64::from);
+            let cosine = (a * goal[0] + b * goal[1] + c * goal[2]) / libm::sqrt(a * a + b * b + c * c);
+            if best.is_none_or(|(most, _)| cosine > most) {
+                best = Some((cosine, lowest_code(u, v)));
+            }
+        }
+    }
+    best.map(|(_, code)| code)
+}
+
+/// The places of `N` directions on the octahedron.
+struct Places<const N: usize> {
+    /// Which coordinate is the largest, and was exchanged with the third.
+    largest: [i32; N],
+    /// The whole numbers below the other two.
+    base: [[i32; N]; 2],
+    /// What is above them.
+    above: [[f32; N]; 2],
+    /// The place.
+    place: [[f32; N]; 3],
+    /// All bits set where the vector's coordinate is negative.
+    negative: [[i32; N]; 3],
+    /// All bits set where the candidates may not do.
+    doubt: [i32; N],
+}
+
+/// Many codes at once, and the component along `axis` of their directions: in binary32 where that leaves no doubt which
+/// code is the nearest, for the rest as [`super::encode_octahedral24_in_hemisphere`].
+pub(super) fn encode_all<const N: usize>(
+    vectors: &[[f64; N]; 3],
+    axis: usize,
+    positive: bool,
+    codes: &mut [u32; N],
+    along: &mut [f64; N],
+) {
+    let places = places(vectors, axis, positive);
+    let (corner, doubt) = nearest_corners(&places);
+    let Places { largest, base: [base_a, base_b], negative: [negative_x, negative_y, negative_z], .. } =
+        &places;
+    let mut component = [0.0; N];
+    let mut squared = [0.0; N];
+    for n in 0..N {
+        let a = base_a[n] + (corner[n] & 1);
+        let b = base_b[n] + (corner[n] >> 1);
+        let c = SCALE - a - b;
+        let (first, second) = (mask(largest[n] == 0), mask(largest[n] == 1));
+        let exchange = |one: i32, other: i32, mask: i32| one ^ ((one ^ other) & mask);
+        let x = exchange(a, c, first);
+        let y = exchange(b, c, second);
+        let z = exchange(exchange(c, a, first), b, second);
+        let x = (x ^ negative_x[n]) - negative_x[n];
+        let y = (y ^ negative_y[n]) - negative_y[n];
+        let z = (z ^ negative_z[n]) - negative_z[n];
+        codes[n] = code_of([x, y, z]);
+        let (x, y, z) = (x as f32, y as f32, z as f32);
+        squared[n] = x * x + y * y + z * z;
+        component[n] = match axis {
+            0 => x,
+            1 => y,
+            _ => z,
+        };
+    }
+    for n in 0..N {
+        along[n] = f64::from((f64::from(component[n]) * unit::inverse_root(squared[n])) as f32);
+    }
+    if doubt.iter().fold(0, |any, doubt| any | doubt) != 0 {
+        for n in (0..N).filter(|&n| doubt[n] != 0) {
+            let vector = vectors.each_ref().map(|c| c[n]);
+            codes[n] = Octahedral24::encode_or_axis(vector, axis, positive);
+            along[n] = f64::from(Octahedral24::decode(&codes[n])[axis]);
+        }
+    }
+}
+
+/// All bits set or none.
+#[inline(always)]
+fn mask(condition: bool) -> i32 {
+    -i32::from(condition)
+}
+
+#[inline(always)]
+fn places<const N: usize>(vectors: &[[f64; N]; 3], axis: usize, positive: bool) -> Places<N> {
+    /// Sums with 1.5 × 2^52 are rounded to whole numbers, the lowest bits of which are those of an i32.
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
+    let mut out = Places {
+        largest: [0; N],
+        base: [[0; N]; 2],
+        above: [[0.0; N]; 2],
+        place: [[0.0; N]; 3],
+        negative: [[0; N]; 3],
+        doubt: [0; N],
+    };
+    let side = if positive { 1.0 } else { -1.0 };
+    let [xs, ys, zs] = vectors;
+    let sides = &vectors[axis];
+    let Places { largest, base: [base_a, base_b], above: [above_a, above_b], place, doubt, .. } = &mut out;
+    let [place_a, place_b, place_c] = place;
+    for n in 0..N {
+        let (x, y, z) = (xs[n].abs(), ys[n].abs(), zs[n].abs());
+        let scale = f64::from(SCALE) / (x + y + z);
+        let x_or_y = if x > y { x } else { y };
+        let exchanged = x_or_y > z;
+        let (x_largest, y_largest) = (exchanged & (x > y), exchanged & !(x > y));
+        let a = if x_largest { z } else { x } * scale;
+        let b = if y_largest { z } else { y } * scale;
+        let c = if exchanged { x_or_y } else { z } * scale;
+        let (down_a, down_b) = ((a - 0.5) + WHOLE, (b - 0.5) + WHOLE);
+        base_a[n] = down_a.to_bits() as i32 & 0xFFF;
+        base_b[n] = down_b.to_bits() as i32 & 0xFFF;
+        above_a[n] = (a - (down_a - WHOLE)) as f32;
+        above_b[n] = (b - (down_b - WHOLE)) as f32;
+        place_a[n] = a as f32;
+        place_b[n] = b as f32;
+        place_c[n] = c as f32;
+        largest[n] = if x_largest {
+            0
+        } else if y_largest {
+            1
+        } else {
+            2
+        };
+        // Rounding to the whole number below may take one too many off, but the component is then next to 1.
+        let inside = sides[n] * side * scale >= 1.5;
+        doubt[n] = mask(!inside);
+    }
+    for (negative, vectors) in out.negative.iter_mut().zip(vectors) {
+        for (negative, vector) in negative.iter_mut().zip(vectors) {
+            *negative = mask(*vector < 0.0);
+        }
+    }
+    out
+}
+
+/// Which corner of its cell is the nearest code: bit 0 to the right, bit 1 up; and where that is in doubt.
+#[inline(always)]
+fn nearest_corners<const N: usize>(places: &Places<N>) -> ([i32; N], [i32; N]) {
+    let mut corner = [0; N];
+    let mut doubt = places.doubt;
+    let [place_a, place_b, place_c] = &places.place;
+    let [above_a, above_b] = &places.above;
+    let lesser = |one: f32, other: f32| if one < other { one } else { other };
+    let greater = |one: f32, other: f32| if one < other { other } else { one };
+    for n in 0..N {
+        let (a, b, c) = (place_a[n], place_b[n], place_c[n]);
+        let (to_right, to_top) = (a - c, b - c);
+        let over_squared = 1.0 / (a * a + b * b + c * c);
+        let distance = |x: f32, y: f32| {
+            let along = to_right * x + to_top * y;
+            let share = along * over_squared;
+            let across = 2.0 * (x * x + y * y + x * y) - along * share;
+            // One over (1 - share)², whose share is at most 0.002: the next term is below 2^-24.
+            across * (1.0 + share * (2.0 + 3.0 * share))
+        };
+        let (x, y) = (above_a[n], above_b[n]);
+        let (here, beside) = (distance(x, y), distance(x - 1.0, y));
+        let (above, beyond) = (distance(x, y - 1.0), distance(x - 1.0, y - 1.0));
+        let (low, high) = (lesser(here, beside), greater(here, beside));
+        let (low_up, high_up) = (lesser(above, beyond), greater(above, beyond));
+        let least = lesser(low, low_up);
+        let second = lesser(greater(low, low_up), lesser(high, high_up));
+        let upper = mask(low_up < low);
+        let right = (mask(beside < here) & !upper) | (mask(beyond < above) & upper);
+        corner[n] = (right & 1) | (upper & 2);
+        doubt[n] |= mask(!(second - least > DOUBT));
+    }
+    (corner, doubt)
+}
+
+#[cfg(test)]
+mod tests;
