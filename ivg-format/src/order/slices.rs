@@ -10,6 +10,9 @@ use ivg_wire::splitmix64;
 /// Rounds of the Feistel network (IVG-ORD-10).
 const ROUNDS: usize = 6;
 
+/// Ranks that are followed at once: one after the other, each round would wait for the round before.
+const AT_ONCE: usize = 8;
+
 /// A permutation of 0..count: a Feistel network over the next power of two, walked along its cycles until the
 /// result is less than count (IVG-ORD-09, IVG-ORD-10).
 #[derive(Clone, Copy, Debug)]
@@ -39,13 +42,34 @@ impl Permutation {
     /// and so returns to numbers below the count; over all ranks it visits each number at most once.
     pub(crate) fn at(&self, rank: u32) -> u32 {
         debug_assert!(rank < self.count, "rank outside the permutation");
-        let mut number = rank;
-        loop {
+        self.walk(self.network(rank))
+    }
+
+    /// On from a number to the next below the count.
+    fn walk(&self, mut number: u32) -> u32 {
+        while number >= self.count {
             number = self.network(number);
-            if number < self.count {
-                return number;
+        }
+        number
+    }
+
+    /// Where the first step from some ranks goes; some of them may be beyond the count.
+    fn first_steps(&self, first: u32) -> [u32; AT_ONCE] {
+        let mut left = [0; AT_ONCE];
+        let mut right = [0; AT_ONCE];
+        for n in 0..AT_ONCE {
+            let rank = first.wrapping_add(n as u32);
+            (left[n], right[n]) = (rank >> self.right_bits, rank & self.right_mask);
+        }
+        for pair in self.keys.chunks_exact(2) {
+            for n in 0..AT_ONCE {
+                left[n] ^= mix32(right[n].wrapping_add(pair[0])) & self.left_mask;
+            }
+            for n in 0..AT_ONCE {
+                right[n] ^= mix32(left[n].wrapping_add(pair[1])) & self.right_mask;
             }
         }
+        core::array::from_fn(|n| left[n] << self.right_bits | right[n])
     }
 
     fn network(&self, number: u32) -> u32 {
@@ -153,7 +177,7 @@ impl Slices {
             return None;
         }
         let rank = u64::from(k.saturating_sub(1)) * self.per_slice + place;
-        Some(self.locate(lattice, &self.permutation(slice as u32), slice, rank as u32))
+        Some(self.locate(lattice, slice, self.permutation(slice as u32).at(rank as u32)))
     }
 
     /// The vertices of bundle `k`, counted from 1; none for 0.
@@ -161,7 +185,17 @@ impl Slices {
         let left = if k == 0 { 0 } else { self.bundle_len(k) };
         let share = self.share(self.outer, k);
         let permutation = self.permutation(0);
-        Walk { slices: *self, lattice: *lattice, k, slice: 0, place: 0, share, permutation, left }
+        Walk {
+            slices: *self,
+            lattice: *lattice,
+            k,
+            slice: 0,
+            place: 0,
+            share,
+            permutation,
+            steps: [0; AT_ONCE],
+            left,
+        }
     }
 
     fn is_outer(&self, slice: u64) -> bool {
@@ -173,10 +207,11 @@ impl Slices {
         Permutation::new(count as u32, self.seed, slice)
     }
 
-    /// The linear index of the vertex with this rank in a slice (IVG-ORD-08).
-    fn locate(&self, lattice: &Lattice, permutation: &Permutation, slice: u64, rank: u32) -> u64 {
-        let [b, c] = [self.dims[self.axes[1]], self.dims[self.axes[2]]].map(u64::from);
-        let mut local = u64::from(permutation.at(rank));
+    /// The linear index of the vertex of a slice with this number (IVG-ORD-08).
+    fn locate(&self, lattice: &Lattice, slice: u64, number: u32) -> u64 {
+        // A slice has fewer than 2³² vertices.
+        let [b, c] = [self.dims[self.axes[1]], self.dims[self.axes[2]]].map(u32::from);
+        let mut local = number;
         if self.is_outer(slice) {
             // Step over the corners of the slice, ascending; where an axis has one vertex, some coincide.
             for row in [0, c - 1].iter().take(c.min(2) as usize) {
@@ -205,6 +240,8 @@ pub(crate) struct Walk {
     place: u64,
     share: u64,
     permutation: Permutation,
+    /// The first steps from the ranks of this place and those before and after it that were taken with it.
+    steps: [u32; AT_ONCE],
     left: u64,
 }
 
@@ -218,9 +255,13 @@ impl Walk {
             self.share = self.slices.share(count, self.k);
             self.permutation = self.slices.permutation(self.slice as u32);
         }
-        let rank = u64::from(self.k - 1) * self.slices.per_slice + self.place;
+        let among = self.place as usize % AT_ONCE;
+        if among == 0 {
+            let rank = u64::from(self.k - 1) * self.slices.per_slice + self.place;
+            self.steps = self.permutation.first_steps(rank as u32);
+        }
         self.place += 1;
-        Some(self.slices.locate(&self.lattice, &self.permutation, self.slice, rank as u32))
+        Some(self.slices.locate(&self.lattice, self.slice, self.permutation.walk(self.steps[among])))
     }
 
     pub(crate) const fn left(&self) -> u64 {

@@ -92,7 +92,7 @@ impl DirectionCode for Octahedral24 {
     #[inline(always)]
     fn fault(code: u32) -> u32 {
         // Only 4095 carries into the thirteenth bit.
-        ((code & 0xFFF) + 1 | (code >> 12) + 1) & 0x1000
+        (((code & 0xFFF) + 1) | ((code >> 12) + 1)) & 0x1000
     }
 
     #[inline(always)]

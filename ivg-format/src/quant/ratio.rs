@@ -50,7 +50,7 @@ pub(crate) fn encode_all(coefficients: &[f32; 8], mean: f32) -> [u8; 8] {
     let below = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| 1.0 / step(which, true));
     let inverse = 1.0 / mean;
     let mut codes = [0; 8];
-    let mut doubt = false;
+    let mut certain = inverse.is_finite();
     for n in 0..8 {
         let negative = coefficients[n] < 0.0;
         let quotient = coefficients[n] * inverse * if negative { below[n] } else { above[n] };
@@ -58,10 +58,10 @@ pub(crate) fn encode_all(coefficients: &[f32; 8], mean: f32) -> [u8; 8] {
         let quotient = if quotient > -127.0 { quotient } else { -127.0 };
         let whole = quotient + WHOLE;
         codes[n] = whole.to_bits() as u8;
-        // Not a number is a doubt, too: that is what a mean of 0 gives, and one too small for its inverse.
-        doubt |= !((quotient - (whole - WHOLE)).abs() < DOUBT);
+        // Not a number is not certain, either: that is what a mean of 0 gives, and one too small for its inverse.
+        certain &= (quotient - (whole - WHOLE)).abs() < DOUBT;
     }
-    if doubt | !inverse.is_finite() { encode_exactly(coefficients, mean) } else { codes }
+    if certain { codes } else { encode_exactly(coefficients, mean) }
 }
 
 #[cold]

@@ -87,7 +87,7 @@ pub(crate) fn decode_all<const N: usize>(codes: &[u32; N], scale_exponent: i16, 
     for n in 0..N {
         let code = codes[n];
         // From 2^-24 to 2^7; times the scale it may be subnormal, and is exact all the same.
-        let step = f32::from_bits((code >> 27) + (127 - EXPONENT_OFFSET as u32) << 23) * scale;
+        let step = f32::from_bits(((code >> 27) + (127 - EXPONENT_OFFSET as u32)) << 23) * scale;
         let component = |bits: u32| (bits & 0x1FF).cast_signed() as f32 * step;
         (red[n], green[n], blue[n]) = (component(code), component(code >> 9), component(code >> 18));
     }

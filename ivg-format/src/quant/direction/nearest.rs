@@ -197,9 +197,10 @@ fn places<const N: usize>(vectors: &[[f64; N]; 3], axis: usize, positive: bool) 
     for n in 0..N {
         let (x, y, z) = (xs[n].abs(), ys[n].abs(), zs[n].abs());
         let scale = f64::from(SCALE) / (x + y + z);
-        let x_or_y = if x > y { x } else { y };
+        let x_over_y = x > y;
+        let x_or_y = if x_over_y { x } else { y };
         let exchanged = x_or_y > z;
-        let (x_largest, y_largest) = (exchanged & (x > y), exchanged & !(x > y));
+        let (x_largest, y_largest) = (exchanged & x_over_y, exchanged & !x_over_y);
         let a = if x_largest { z } else { x } * scale;
         let b = if y_largest { z } else { y } * scale;
         let c = if exchanged { x_or_y } else { z } * scale;
@@ -260,7 +261,7 @@ fn nearest_corners<const N: usize>(places: &Places<N>) -> ([i32; N], [i32; N]) {
         let upper = mask(low_up < low);
         let right = (mask(beside < here) & !upper) | (mask(beyond < above) & upper);
         corner[n] = (right & 1) | (upper & 2);
-        doubt[n] |= mask(!(second - least > DOUBT));
+        doubt[n] |= !mask(second - least > DOUBT);
     }
     (corner, doubt)
 }

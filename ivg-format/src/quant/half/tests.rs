@@ -41,7 +41,7 @@ quickcheck! {
         let found = from_f32(value);
         let error = |bits: u16| if bits >= 0x7C00 { 65536.0 } else { by_definition(bits) } - f64::from(value);
         let (here, above, below) = (error(found), error(found + 1), error(found.saturating_sub(1)));
-        let nearer = |other: f64| here.abs() < other.abs() || here.abs() == other.abs() && found % 2 == 0;
+        let nearer = |other: f64| here.abs() < other.abs() || here.abs() == other.abs() && found.is_multiple_of(2);
         (found == 0x7C00 || nearer(above)) && (found == 0 || nearer(below))
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::quant::power_of_two;
 
 #[test]
 fn the_steps_are_the_numbers_nearest_to_the_bounds_over_127() {
@@ -31,5 +32,67 @@ fn every_code_survives_and_ratios_between_go_to_the_nearer() {
             }
         }
         assert_eq!([encode(1e9, which), encode(-1e9, which), encode(f64::NAN, which)], [127, -127, 0]);
+    }
+}
+
+/// The rule, with one division in binary64 of an exact product: correct up to that division.
+fn by_the_rule(coefficient: f32, mean: f32, which: usize) -> i8 {
+    if mean == 0.0 {
+        return 0;
+    }
+    let unit = f64::from(mean) * f64::from(step(which, coefficient < 0.0));
+    libm::round(f64::from(coefficient) / unit).clamp(-127.0, 127.0) as i8
+}
+
+#[test]
+fn a_channel_at_once_gives_what_the_rule_gives() {
+    let mut random = 1u64;
+    let mut next = || {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 33) as u32
+    };
+    for round in 0..200_000u32 {
+        // Means as RGB9E5 gives them, scaled by anything, and 0.
+        let exponent = next() % 220;
+        let mean = f32::from_bits((20 + exponent) << 23) * (next() % 512) as f32;
+        let coefficients: [f32; 8] = core::array::from_fn(|n| {
+            let sign = if next() % 2 == 0 { 1.0 } else { -1.0 };
+            let unit = f64::from(mean) * f64::from(step(n + 1, sign < 0.0));
+            let steps = match round % 3 {
+                // Anything up to the bounds and beyond; the middle between two codes, as nearly as binary32 can hold it.
+                0 => f64::from(next()) / f64::from(1u32 << 31) * 150.0,
+                1 => f64::from(next() % 128) + 0.5,
+                _ => f64::from(next() % 256) / 2.0,
+            };
+            (unit * steps * sign) as f32
+        });
+        let codes = encode_all(&coefficients, mean);
+        for (n, code) in codes.into_iter().enumerate() {
+            let expected = by_the_rule(coefficients[n], mean, n + 1);
+            assert_eq!(
+                code.cast_signed(),
+                expected,
+                "{:e} of {mean:e}, coefficient {}",
+                coefficients[n],
+                n + 1
+            );
+        }
+    }
+}
+
+#[test]
+fn halves_go_away_from_zero() {
+    // K / 2 is exact, and so is the ratio to a mean of a power of two.
+    for mean in [1.0, 0.25, 1e-30f32, 64.0] {
+        let mean = power_of_two(mean.log2().floor() as i32);
+        for which in 1..9 {
+            for sign in [1.0, -1.0] {
+                let half = mean * step(which, sign < 0.0) * 0.5 * sign;
+                let mut coefficients = [0.0; 8];
+                coefficients[which - 1] = half;
+                assert_eq!(encode_all(&coefficients, mean)[which - 1].cast_signed(), sign as i8);
+                assert_eq!(encode(f64::from(half) / f64::from(mean), which), sign as i8);
+            }
+        }
     }
 }

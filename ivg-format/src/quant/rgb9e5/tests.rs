@@ -1,4 +1,5 @@
 use super::*;
+use alloc::vec::Vec;
 use quickcheck::quickcheck;
 
 #[track_caller]
@@ -104,6 +105,23 @@ quickcheck! {
         // 1/511 of it; or 2^-25 at the lowest exponent.
         let bound = (most / 511.0).max(power_of_two(-25));
         colour.iter().zip(decode(encode(colour))).all(|(&a, b)| (a - b).abs() <= bound)
+    }
+
+    fn many_at_once_give_what_each_gives_alone(colours: Vec<(u32, u32, u32)>, scale_exponent: i16) -> bool {
+        // Positive finite numbers of every size; sums of few digits, so that halves appear; and zeros.
+        let positive = |bits: u32| match bits % 4 {
+            0 => f64::from(bits >> 20) / 8.0,
+            _ => f64::from(f32::from_bits((bits & 0x7FFF_FFFF).min(0x7F7F_FFFF))),
+        };
+        let colour = |n: usize| colours.get(n).map_or([0.0; 3], |&(r, g, b)| [r, g, b].map(positive));
+        let columns: [[f64; 16]; 3] = core::array::from_fn(|k| core::array::from_fn(|n| colour(n)[k]));
+        let codes = encode_all(&columns);
+        let scale_exponent = scale_exponent.rem_euclid(238) - 125;
+        let mut decoded = [[0.0; 16]; 3];
+        decode_all(&codes, scale_exponent, &mut decoded);
+        (0..16).all(|n| {
+            codes[n] == encode_f64(colour(n)) && decoded.map(|c| c[n]) == decode_scaled(codes[n], scale_exponent)
+        })
     }
 
     fn decoded_codes_are_stable(code: u32) -> bool {
