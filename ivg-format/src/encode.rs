@@ -1,6 +1,7 @@
 //! Writing: a dense grid becomes a file. Deterministic: the same source and options give the same bytes.
 
 mod lists;
+mod record;
 
 use crate::codec::{Fault, Prepared};
 use crate::directory::{DIRECTORY, Directory};
@@ -16,6 +17,8 @@ use alloc::vec::Vec;
 use core::fmt;
 use ivg_wire::{ContentId, Maximum, record_len, seal, write_chunk, write_end, write_record};
 use lists::Lists;
+
+pub use record::encode_record;
 
 /// What to write: one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -227,7 +230,7 @@ pub enum EncodeError {
 pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8>, EncodeError> {
     check_source(source)?;
     let prepared = Prepared::new(source.values, options.encoding, None)
-        .map_err(|fault| named(fault, source, options.encoding))?;
+        .map_err(|fault| named(fault, source, options.encoding, |index| index as u64))?;
     let header = Header { scale_exponent: prepared.scale_exponent(), ..unplaced(source, options)? };
     let lists = Lists::of(source, options.order, header.largest_bundle())?;
     let directory = lists.directory(options)?;
@@ -253,56 +256,10 @@ pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8
     Ok(out)
 }
 
-/// Writes one record of the file with this header, at a generation: what a server replaces a record by that it has better
-/// light for (IVG-UPD-01). At generation 0 and from the source that [`encode`] was given, the bytes in the file.
-///
-/// The header stays as it is, so values are stored at its scale exponent, whatever the source's largest is now.
-///
-/// # Errors
-///
-/// As [`encode`]; [`EncodeError::OtherFile`] if the source does not fit the header, [`EncodeError::ScaleExponent`] if a
-/// value is too large for the file, [`EncodeError::NeverReplaced`] for a generation of a record that has none.
-pub fn encode_record(
-    source: &GridSource<'_>,
-    header: &Header,
-    id: RecordId,
-    generation: u32,
-) -> Result<Vec<u8>, EncodeError> {
-    check_source(source)?;
-    let has_validity = source.validity.is_some() || source.blocked_edges.is_some();
-    let what = if source.lattice != header.lattice {
-        "lattice"
-    } else if has_validity != (header.validity_records > 0) {
-        "validity"
-    } else if header.record_range(id).is_empty() {
-        "record"
-    } else {
-        ""
-    };
-    if !what.is_empty() {
-        return Err(EncodeError::OtherFile { what });
-    }
-    let mut out = Vec::new();
-    if generation != 0 && matches!(id, RecordId::Validity(_) | RecordId::End) {
-        return Err(EncodeError::NeverReplaced { id });
-    }
-    if id == RecordId::End {
-        write_end(&mut out, header.file_bytes, header.content_id);
-        return Ok(out);
-    }
-    let lists = Lists::of(source, header.order, header.largest_bundle())?;
-    let prepared = Prepared::new(source.values, header.encoding, Some(header.scale_exponent))
-        .map_err(|fault| named(fault, source, header.encoding))?;
-    let mut payload = Vec::new();
-    if header.order == Order::Explicit && lists.len() != header.bundle_count as usize {
-        return Err(EncodeError::OtherFile { what: "bundles" });
-    }
-    write_payload(&mut payload, source, header, &lists, &prepared, id);
-    if payload.len() as u64 != header.payload_len(id) {
-        return Err(EncodeError::OtherFile { what: "bundles" });
-    }
-    write_record(&mut out, id.stored(), generation, &payload, header.content_id);
-    Ok(out)
+fn write_validity(out: &mut Vec<u8>, source: &GridSource<'_>, header: &Header, j: u32) {
+    let first = (u64::from(j) * VALIDITY_BLOCK) as usize;
+    let range = first..first + header.record_vertices(RecordId::Validity(j)) as usize;
+    validity::write(out, range, source.validity, source.blocked_edges);
 }
 
 /// Appends the payload of a record that is not the end record.
@@ -323,11 +280,7 @@ fn write_payload(
                 prepared.write(out, list);
             }
         },
-        RecordId::Validity(j) => {
-            let first = (u64::from(j) * VALIDITY_BLOCK) as usize;
-            let range = first..first + header.record_vertices(id) as usize;
-            validity::write(out, range, source.validity, source.blocked_edges);
-        }
+        RecordId::Validity(j) => write_validity(out, source, header, j),
         RecordId::Corners | RecordId::End => prepared.write(out, header.lattice.corners()),
     }
 }
@@ -460,8 +413,13 @@ fn layout(
 }
 
 /// The encoding's complaint as the caller's: with the vertex' coordinates.
-fn named(fault: Fault, source: &GridSource<'_>, encoding: Encoding) -> EncodeError {
-    let at = |index| source.lattice.coords(index as u64);
+fn named(
+    fault: Fault,
+    source: &GridSource<'_>,
+    encoding: Encoding,
+    vertex: impl Fn(usize) -> u64,
+) -> EncodeError {
+    let at = |index| source.lattice.coords(vertex(index));
     match fault {
         Fault::Quantity => EncodeError::Quantity { encoding, found: source.values.quantity() },
         Fault::NotFinite(index, hemisphere) => {

@@ -11,6 +11,9 @@ use ivg_wire::splitmix64;
 /// Children of a cell that is cut along three axes.
 const MOST_CHILDREN: usize = 8;
 
+/// Corners of a lattice.
+const MOST_CORNERS: u64 = 8;
+
 /// The children of a cell that is cut along one, two, three axes in the order of their turns, before the cell's hash
 /// is applied: of eight, the first four have no common face (IVG-OCT-04).
 const TURNS: [[u8; MOST_CHILDREN]; 3] =
@@ -29,7 +32,7 @@ pub(crate) struct Octree {
 impl Octree {
     pub(crate) fn new(lattice: &Lattice, per_slice: u32, seed: u64) -> Self {
         let longest = u64::from(lattice.dims[lattice.longest_axis()]);
-        let whole = Cell { low: [0; 3], extent: lattice.dims };
+        let whole = Cell::whole(lattice.dims);
         // At most 2³² vertices of each of 65,535 slices: no overflow.
         let per_bundle = u64::from(per_slice) * longest;
         Self { dims: lattice.dims, count: whole.count(lattice.dims), per_bundle, seed }
@@ -68,72 +71,54 @@ impl Octree {
         Walk { octree: *self, ranks: if k == 0 { 0..0 } else { self.ranks(k) } }
     }
 
-    /// The linear index of the vertex with this rank, which must be less than the count (IVG-OCT-02, IVG-OCT-03).
+    /// The linear index of the vertex with this rank, which must be less than the count (IVG-OCT-05).
     pub(crate) fn at(&self, mut rank: u64) -> u64 {
         debug_assert!(rank < self.count, "rank outside the order");
-        let mut cell = Cell { low: [0; 3], extent: self.dims };
-        let mut depth = 0;
-        while cell.extent != [1; 3] {
-            (cell, rank) = cell.child_with(rank, self.dims, self.seed, depth);
-            depth += 1;
-        }
-        index(self.dims, cell.low)
-    }
-}
-
-fn index([nx, ny, _]: [u16; 3], [i, j, k]: [u16; 3]) -> u64 {
-    u64::from(i) + u64::from(nx) * (u64::from(j) + u64::from(ny) * u64::from(k))
-}
-
-/// A box of vertices.
-#[derive(Clone, Copy, Debug)]
-struct Cell {
-    low: [u16; 3],
-    extent: [u16; 3],
-}
-
-impl Cell {
-    /// Vertices that are not corners of the lattice.
-    fn count(&self, dims: [u16; 3]) -> u64 {
-        let (mut vertices, mut corners) = (1, 1);
-        for ((&low, &extent), n) in self.low.iter().zip(&self.extent).zip(dims) {
-            vertices *= u64::from(extent);
-            // Of the two ends of the axis, which are one where it has a single vertex.
-            corners *= u64::from(low == 0) + u64::from(n > 1 && low + extent == n);
-        }
-        vertices - corners
-    }
-
-    /// The child that holds the vertex of rank `rank` of this cell, and the vertex's rank there.
-    fn child_with(&self, mut rank: u64, dims: [u16; 3], seed: u64, depth: u64) -> (Self, u64) {
-        let longest = u32::from(self.extent.into_iter().fold(1, u16::max));
-        let split = self.extent.map(|e| e > 1 && 2 * u32::from(e) > longest);
-        // At least the longest axis: a cell with a choice has an extent of 2 or more.
-        let axes = split.into_iter().filter(|&s| s).count();
-        let children = 1usize << axes;
-        let hash = splitmix64(seed, 32 * index(dims, self.low) + depth) as usize % children;
-
-        let child = |turn: usize| {
-            let mut which = usize::from(TURNS[axes - 1][turn]) ^ hash;
-            let mut child = *self;
-            for axis in (0..3).filter(|&axis| split[axis]) {
-                let lower = self.extent[axis].div_ceil(2);
-                if which & 1 == 0 {
-                    child.extent[axis] = lower;
-                } else {
-                    child.low[axis] += lower;
-                    child.extent[axis] -= lower;
-                }
+        let [nx, ny, _] = self.dims.map(u64::from);
+        let strides = [1, nx, nx * ny];
+        let mut cell = Cell::whole(self.dims);
+        let (mut vertex, mut depth) = (0, 0);
+        while let Some(cut) = cell.cut() {
+            let hash = splitmix64(self.seed, 32 * vertex + depth) as usize & (cut.children() - 1);
+            let (turn, rank_in_child) = self.turn(&cell, &cut, hash, rank);
+            let mut which = cut.number(turn, hash);
+            for &axis in cut.axes() {
+                // Arithmetic, not a branch: which part it is cannot be predicted.
+                let (lower, upper) = (cut.lower[axis], which as u32 & 1);
+                cell.low[axis] += upper * lower;
+                cell.extent[axis] = lower - upper * (2 * lower - cell.extent[axis]);
+                vertex += strides[axis] * u64::from(upper * lower);
                 which >>= 1;
             }
-            child
+            (rank, depth) = (rank_in_child, depth + 1);
+        }
+        vertex
+    }
+
+    /// The turn of the child that holds the vertex of rank `rank` of a cell, and the vertex's rank there.
+    fn turn(&self, cell: &Cell, cut: &Cut, hash: usize, rank: u64) -> (usize, u64) {
+        let children = cut.children();
+        // While no child is exhausted, which the smallest is first, all take part; children are a power of two.
+        let in_all = |smallest: u64| {
+            let (turn, round) = (rank as usize & (children - 1), rank >> cut.count);
+            (round < smallest).then_some((turn, round))
         };
+        // A child has at most eight corners less than vertices: near enough for all but the last rounds.
+        let corners = if cell.has_corners(self.dims) { MOST_CORNERS } else { 0 };
+        if let Some(found) = in_all(cut.smallest(cell).saturating_sub(corners)) {
+            return found;
+        }
         let mut counts = [0; MOST_CHILDREN];
+        let mut smallest = u64::MAX;
         for (turn, count) in counts.iter_mut().enumerate().take(children) {
-            *count = child(turn).count(dims);
+            *count = cut.child(cell, cut.number(turn, hash)).count(self.dims);
+            smallest = smallest.min(*count);
+        }
+        if let Some(found) = in_all(smallest) {
+            return found;
         }
         // Rounds between one child's end and the next one's all have the same children.
-        let mut before = 0;
+        let (mut before, mut rank) = (0, rank);
         loop {
             let left = counts.iter().filter(|&&count| count > before);
             let (taking, next) = left.fold((0, u64::MAX), |(n, least), &count| (n + 1, least.min(count)));
@@ -142,11 +127,105 @@ impl Cell {
             if rank < vertices {
                 let place = (rank % taking) as usize;
                 let turn = (0..children).filter(|&turn| counts[turn] > before).nth(place);
-                return (child(turn.unwrap_or(0)), before + rank / taking);
+                return (turn.unwrap_or(0), before + rank / taking);
             }
             rank -= vertices;
             before = next;
         }
+    }
+}
+
+/// A box of vertices.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    low: [u32; 3],
+    extent: [u32; 3],
+}
+
+impl Cell {
+    fn whole(dims: [u16; 3]) -> Self {
+        Self { low: [0; 3], extent: dims.map(u32::from) }
+    }
+
+    /// Whether it has a corner of the lattice: an end of every axis.
+    fn has_corners(&self, dims: [u16; 3]) -> bool {
+        (0..3).all(|a| self.low[a] == 0 || self.low[a] + self.extent[a] == u32::from(dims[a]))
+    }
+
+    /// Vertices that are not corners of the lattice.
+    fn count(&self, dims: [u16; 3]) -> u64 {
+        let (mut vertices, mut corners) = (1, 1);
+        for ((&low, &extent), n) in self.low.iter().zip(&self.extent).zip(dims.map(u32::from)) {
+            vertices *= u64::from(extent);
+            // Of the two ends of the axis, which are one where it has a single vertex.
+            corners *= u64::from(low == 0) + u64::from(n > 1 && low + extent == n);
+        }
+        vertices - corners
+    }
+
+    /// How it is cut (IVG-OCT-02); `None` for a single vertex.
+    fn cut(&self) -> Option<Cut> {
+        let longest = self.extent[0].max(self.extent[1]).max(self.extent[2]);
+        if longest == 1 {
+            return None;
+        }
+        let mut cut = Cut { axes: [0; 3], count: 0, lower: self.extent };
+        for (axis, &extent) in self.extent.iter().enumerate() {
+            // An extent of 1 never passes: the longest is 2 or more.
+            if 2 * extent > longest {
+                cut.axes[cut.count] = axis;
+                cut.count += 1;
+                cut.lower[axis] = extent - extent / 2;
+            }
+        }
+        Some(cut)
+    }
+}
+
+/// Along which axes a cell is cut, and where.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    /// The first `count`, ascending; at least one.
+    axes: [usize; 3],
+    count: usize,
+    /// Extent of the lower part; where the axis is not cut, of the cell.
+    lower: [u32; 3],
+}
+
+impl Cut {
+    fn axes(&self) -> &[usize] {
+        &self.axes[..self.count]
+    }
+
+    fn children(&self) -> usize {
+        1 << self.count
+    }
+
+    /// The number of the child whose turn it is (IVG-OCT-04).
+    fn number(&self, turn: usize, hash: usize) -> usize {
+        usize::from(TURNS[self.count - 1][turn]) ^ hash
+    }
+
+    /// Vertices of the smallest child: the upper part along every axis.
+    fn smallest(&self, cell: &Cell) -> u64 {
+        let mut upper = cell.extent;
+        for &axis in self.axes() {
+            upper[axis] -= self.lower[axis];
+        }
+        upper.iter().map(|&extent| u64::from(extent)).product()
+    }
+
+    fn child(&self, cell: &Cell, number: usize) -> Cell {
+        let mut child = *cell;
+        for (bit, &axis) in self.axes().iter().enumerate() {
+            if number >> bit & 1 == 0 {
+                child.extent[axis] = self.lower[axis];
+            } else {
+                child.low[axis] += self.lower[axis];
+                child.extent[axis] -= self.lower[axis];
+            }
+        }
+        child
     }
 }
 

@@ -100,8 +100,8 @@ pub(crate) fn bundles(lattice: &Lattice, per_slice: u32, keep: impl Fn(u64) -> b
 
 /// A file of the order `explicit` with all chunks, in which the vertices inside geometry are in no bundle.
 pub(crate) fn full_explicit() -> Vec<u8> {
-    let lattice = lattice([3, 4, 3]);
-    let validity: Vec<u8> = (0..36).map(|v| if v % 5 == 4 { 0 } else { 255 }).collect();
+    let lattice = lattice([3, 3, 2]);
+    let validity: Vec<u8> = (0..18).map(|v| if v % 5 == 4 { 0 } else { 255 }).collect();
     let (values, bundles) = (vectors(&lattice), bundles(&lattice, 2, |v| validity[v as usize] != 0));
     let lights = [BakedLight { name: "lamp", direct_included: false }];
     let source = GridSource {

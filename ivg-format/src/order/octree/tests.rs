@@ -13,16 +13,21 @@ fn octree(dims: [u16; 3], per_slice: u32, seed: u64) -> Octree {
     Octree::new(&lattice(dims), per_slice, seed)
 }
 
+fn index(dims: [u16; 3], cell: Cell) -> u64 {
+    let [i, j, k] = cell.low.map(|n| n as u16);
+    lattice(dims).index(i, j, k)
+}
+
 /// The order as IVG-OCT-03 tells it: whole lists of the children's vertices, taken in turn.
 fn round_by_round(dims: [u16; 3], cell: Cell, depth: u64, seed: u64) -> Vec<u64> {
     if cell.extent == [1; 3] {
-        let vertex = index(dims, cell.low);
+        let vertex = index(dims, cell);
         return if lattice(dims).is_corner(vertex) { vec![] } else { vec![vertex] };
     }
     let longest = cell.extent.iter().copied().max().unwrap();
     let cut: Vec<usize> = (0..3).filter(|&a| cell.extent[a] >= 2 && 2 * cell.extent[a] > longest).collect();
     let m = 1u64 << cut.len();
-    let hash = splitmix64(seed, 32 * index(dims, cell.low) + depth) % m;
+    let hash = splitmix64(seed, 32 * index(dims, cell) + depth) % m;
     let turns: &[u64] = match m {
         2 => &[0, 1],
         4 => &[0, 3, 1, 2],
@@ -51,7 +56,7 @@ fn round_by_round(dims: [u16; 3], cell: Cell, depth: u64, seed: u64) -> Vec<u64>
 /// Checks everything the order promises, by brute force.
 fn check(dims: [u16; 3], per_slice: u32, seed: u64) {
     let octree = octree(dims, per_slice, seed);
-    let expected = round_by_round(dims, Cell { low: [0; 3], extent: dims }, 0, seed);
+    let expected = round_by_round(dims, Cell::whole(dims), 0, seed);
     assert_eq!(octree.count, expected.len() as u64, "{dims:?}");
     let found: Vec<u64> = (0..octree.count).map(|rank| octree.at(rank)).collect();
     assert_eq!(found, expected, "{dims:?}, seed {seed}");
