@@ -1,16 +1,29 @@
 //! The .ivg format: irradiance vector grids as bundles that can be streamed in any order.
 //!
-//! An irradiance vector grid stores, at each vertex of a regular lattice, the indirect light that arrives from
-//! the six hemispheres around the coordinate axes. Authority: `spec/common.md` and `spec/ivg.md`, which define
-//! every byte, every rounding and every error; clause ids such as `IVG-DIR-03` are theirs.
+//! A grid describes indirect light: what reaches a point after at least one reflection. At each vertex of a regular lattice it
+//! holds one of two quantities, for red, green and blue (linear, Rec. 709):
+//!
+//! - *irradiance vectors* ([`HemisphereVectors`]): for each of the six hemispheres around +x −x +y −y +z −z, in this order, the
+//!   sum of all light that arrives from it, each ray as a vector *towards where it comes from*, as long as it is bright
+//!   \[W/m²\]. A surface that faces +x receives the x component of the first: its irradiance. How other normals combine three
+//!   vectors is in the crate `ivg-grid`; the idea is that of Pacanowski et al., Web3D 2008.
+//! - *radiance harmonics* ([`RadianceHarmonics`]): nine coefficients of spherical harmonics \[W/(m² sr)\], which give
+//!   the irradiance of any normal more accurately in fewer bytes.
+//!
+//! [`Encoding`] says how they are stored, and has a table of what each costs: `packed-oct24`, the default, for drawing;
+//! `sh2-28` for accuracy; `vectors-f32` to lose nothing. [`Order`] says which vertices come together in a *bundle*.
+//! Authority: `spec/common.md` and `spec/ivg.md`, which define every byte, every rounding and every error; clause ids such
+//! as `IVG-DIR-03` are theirs.
 //!
 //! ```text
-//! header 144 ─ chunks: LITE, META ─ corners ─ validity blocks (optional) ─ bundle 1 … bundle B ─ end 20
+//! header 144 ─ chunks: DIRE, LITE, META ─ corners ─ validity blocks (optional) ─ bundle 1 … bundle B ─ end 20
 //! ```
 //!
 //! A file of 32³ vertices in `packed-oct24` (42 bytes a vertex) takes 1.4 MB; with 64 vertices per slice it
 //! comes in 16 bundles of 86 KB, each of which can be fetched and verified alone, and each of which is spread
 //! over the whole volume.
+//!
+//! Writing a grid, and reading all of it as it arrives:
 //!
 //! ```
 //! use ivg_format::{EncodeOptions, Event, GridSource, Lattice, Limits, decode_all, encode};
@@ -32,6 +45,31 @@
 //!     }
 //! })?;
 //! assert_eq!(received, 24);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Reading by records, in any order, as a client does that fetches ranges of the file; here the last bundle alone, its
+//! vertices some at a time, which is several times as fast as one by one:
+//!
+//! ```
+//! # use ivg_format::{EncodeOptions, Event, GridSource, Header, HemisphereVectors, Lattice, Limits, RecordId, Step};
+//! # let lattice = Lattice::new([4, 3, 2], [0.0; 3], [3.0, 2.0, 1.0])?;
+//! # let file = ivg_format::encode(&GridSource::new(lattice, &vec![HemisphereVectors::default(); 24]), &EncodeOptions::default())?;
+//! let Step::Consumed(_, header) = Header::read(&file, &Limits::default())? else {
+//!     return Err("more bytes are needed".into());
+//! };
+//! let id = RecordId::Bundle(header.bundle_count);
+//! let range = header.record_range(id);
+//! let bytes = &file[range.start as usize..range.end as usize];
+//! if let Event::Bundle(bundle) = ivg_format::decode_record(&header, id, bytes)? {
+//!     let vertices: Vec<u64> = bundle.vertices().collect();
+//!     let mut values = [HemisphereVectors::default(); 32];
+//!     for (place, vertices) in vertices.chunks(32).enumerate() {
+//!         let values = &mut values[..vertices.len()];
+//!         bundle.read_vectors(place * 32, values);
+//!         // values[n] belongs to the vertex with linear index vertices[n].
+//!     }
+//! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
