@@ -29,9 +29,9 @@ use crate::{FillOptions, GridError, IrradianceGrid};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Memory: besides the grid about 60 bytes a vertex (40 for radiance harmonics), as much again where geometry keeps
-/// some vertices from being reached, at most six times as much for the worst pattern of blocked edges; room for four
-/// layers of the lattice; and a copy of what was received for invalid vertices.
+/// Memory: besides the grid about 80 bytes a vertex (60 for radiance harmonics), as much again where geometry keeps
+/// some vertices from being reached, at most six times as much for the worst pattern of blocked edges, and a copy of
+/// what was received for invalid vertices.
 #[derive(Clone, Debug)]
 pub struct FilledGrid {
     grid: IrradianceGrid,
