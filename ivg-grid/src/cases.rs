@@ -206,7 +206,7 @@ fn looks_on_the_way() -> Outcome {
     let mut filled = FilledGrid::new(received.clone(), FillOptions::default());
     let mut differing = 0;
     for n in 0..150_usize {
-        let index = n * 179 % 150 * 3;
+        let index = n * 179 % 100 * 5;
         let vectors = [[[(n as f32 * 0.61).sin(); 3]; 3]; 6];
         received.set(index, &vectors);
         filled.set(index, &vectors);
