@@ -1,5 +1,6 @@
 //! The commands as a user meets them: exit status, output, files.
 
+#[allow(dead_code, reason = "shared with the other tests, which use other parts")]
 mod support;
 
 use std::fs;

@@ -263,6 +263,14 @@ fn check_warns_of_vertices_that_come_twice_or_never() {
     };
     assert!(names("vertex 2 is in no bundle"), "{report}");
     assert!(names("vertex 1 is in more than one bundle"), "{report}");
+
+    // Recoding mends it: the vertex that never came is not dark afterwards.
+    let output = place.run(&["recode", "bad.ivg", "-o", "mended.ivg", "--order", "slices"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("in no bundle"), "{}", text(&output.stderr));
+    place.write("points.csv", b"x,y,z,nx,ny,nz\n0.25,0,0,1,0,0\n");
+    let table = text(&place.ok(&["sample", "mended.ivg", "--points", "points.csv"]));
+    assert!(table.ends_with("1,0,0,1,1,1\n"), "light of 1 W/m² everywhere: {table}");
 }
 
 #[test]
@@ -312,6 +320,19 @@ fn sample_answers_outside_the_grid_and_says_so() {
         results(lines[2]),
         "the nearest point of the box answers, for normals of any length"
     );
+}
+
+#[test]
+fn points_come_from_stdin_too() {
+    let place = Workplace::with_room();
+    bake(&place, "light.ivg", &[]);
+    place.write("points.csv", POINTS.as_bytes());
+    let from_file = place.run(&["sample", "light.ivg", "--points", "points.csv"]);
+    let piped = place.run_with(&["sample", "light.ivg", "--points", "-"], POINTS.as_bytes());
+    assert!(piped.status.success(), "{}", text(&piped.stderr));
+    assert_eq!(piped.stdout, from_file.stdout);
+    let refused = place.run_with(&["sample", "light.ivg", "--points", "-"], b"x\n");
+    assert!(text(&refused.stderr).starts_with("ivg: stdin: line 1"), "{}", text(&refused.stderr));
 }
 
 #[test]

@@ -12,7 +12,8 @@
 //! - [`pack()`] writes a scene directory whose `scene.glb` any glTF viewer opens; [`LocalScene`] reads one from disk.
 //! - [`serve()`] is a static server with ranges, strong entity tags, and limits on time, size and connections.
 //! - [`Session`] fetches step by step towards [`Goal`]s, goes on where a connection broke, verifies every record, and
-//!   begins a file anew that has changed on the server.
+//!   begins a file anew that has changed on the server. [`Session::grid`] is filled whenever it is looked at; only what has
+//!   changed since the last look is computed.
 //!
 //! Authority: `spec/gltf-extensions.md` and `spec/stream.md`; clause ids such as `STR-CLI-05` are theirs. [`blocking`]
 //! has server and session for callers without an asynchronous runtime.

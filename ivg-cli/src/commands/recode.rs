@@ -2,7 +2,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use ivg_format::{EncodeOptions, Event, Header, Limits, Order, Quantity, decode_all};
-use ivg_grid::{IrradianceGrid, harmonics};
+use ivg_grid::{FillOptions, IrradianceGrid, harmonics};
 use serde_json::{Value, json};
 
 use crate::args::RecodeArguments;
@@ -20,6 +20,7 @@ pub(crate) fn run(arguments: &RecodeArguments) -> Result<ExitCode, Failure> {
         return Err(Failure::usage(format_args!("{}: recode is for .ivg files", path.display())));
     }
     let (grid, header) = read(path, &bytes)?;
+    let grid = without_gaps(path, grid);
     let options = EncodeOptions {
         encoding: arguments.encoding.unwrap_or(header.encoding),
         order: arguments.order.unwrap_or(header.order),
@@ -56,6 +57,20 @@ pub(crate) fn run(arguments: &RecodeArguments) -> Result<ExitCode, Failure> {
 
 fn read(path: &Path, bytes: &[u8]) -> Result<(IrradianceGrid, Header), Failure> {
     IrradianceGrid::from_file(bytes, &Limits::default()).map_err(|error| Failure::file(path, error))
+}
+
+/// The grid with every vertex that light reaches: only a file that breaks a rule for writers (IVG-EXP-04) lacks some.
+fn without_gaps(path: &Path, grid: IrradianceGrid) -> IrradianceGrid {
+    let lacks = |&vertex: &usize| grid.is_valid(vertex) && !grid.is_received(vertex);
+    let missing = (0..grid.vertex_count()).filter(lacks).count();
+    if missing == 0 {
+        return grid;
+    }
+    eprintln!(
+        "ivg: warning: {}: vertices in no bundle, filled from those around them: {missing}",
+        path.display()
+    );
+    ivg_grid::fill(&grid, &FillOptions::default())
 }
 
 /// The grid in the quantity that the encoding stores, where that is another one than the file's.
