@@ -49,4 +49,23 @@ fn between_different_directions_the_product_of_means_is_not_the_mean_of_products
     // Towards z the products average to (6 + 3 · 2) / 14, apart they are (6 + 2) / 14 · 2.
     assert!((linear(&grid, p, Vec3::Z).x - 12.0 / 14.0).abs() < 1e-5);
     assert!((textures.irradiance(p, Vec3::Z).x - 16.0 / 14.0).abs() < 1e-6);
+    // At the vertices there is nothing to mix.
+    for x in [0.0, 1.0] {
+        let (p, n) = (DVec3::new(x, 0.0, 0.0), Vec3::new(0.6, 0.0, 0.8));
+        assert!((textures.irradiance(p, n) - linear(&grid, p, n)).abs().max_element() < 1e-5);
+    }
+}
+
+#[test]
+fn packing_keeps_the_components_along_the_axes() {
+    // Red from one direction, green from another.
+    let mut grid = two([(W, Vec3::ONE); 2]);
+    let other = Vec3::new(W.z, W.y, W.x);
+    grid.set(0, &[[W.to_array(), other.to_array(), [0.0; 3]]; 6]);
+    let textures = SeparateTextures::new(&grid);
+    for axis in 0..3 {
+        let found = textures.irradiance(DVec3::ZERO, Vec3::AXES[axis]);
+        let expected = Vec3::new(W[axis], other[axis], 0.0);
+        assert!((found - expected).abs().max_element() < 1e-6, "{found} {expected}");
+    }
 }
