@@ -129,7 +129,7 @@ pub(crate) fn samples() -> Vec<Vec<u8>> {
     let mut samples = vec![
         full(),
         plain([1, 1, 1], Encoding::PackedOct24, 64),
-        plain([2, 2, 2], Encoding::VectorsF32, 1),
+        plain([2, 2, 2], Encoding::PackedXyz24, 1),
         plain([1, 3, 2], Encoding::PackedOct24, 1),
         ordered([2, 3, 3], Order::Octree, 2),
         ordered([2, 3, 3], Order::Explicit, 2),
