@@ -34,6 +34,11 @@ pub(crate) fn grid(path: &Path, bytes: &[u8]) -> Result<(GridHeader, IrradianceG
     }
 }
 
+/// Vertices of a grid that have not arrived although light reaches them, as far as is known.
+pub(crate) fn missing(grid: &IrradianceGrid) -> usize {
+    (0..grid.vertex_count()).filter(|&vertex| grid.is_valid(vertex) && !grid.is_received(vertex)).count()
+}
+
 /// A mesh with the vertices that whole packets of `bytes` bring, and how many bytes those packets end at.
 pub(crate) fn mesh(path: &Path, bytes: &[u8]) -> Result<(Replay, u64), Failure> {
     let refused = |error: Error| Failure::file(path, error);

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::kind::FileKind;
 use crate::loss::{Loss, Stored};
 use crate::writing::{self, Extras};
-use crate::{files, table};
+use crate::{files, reading, table};
 
 pub(crate) fn run(arguments: &RecodeArguments) -> Result<ExitCode, Failure> {
     files::require_extension(&arguments.out, &["ivg"])?;
@@ -61,14 +61,14 @@ fn read(path: &Path, bytes: &[u8]) -> Result<(IrradianceGrid, Header), Failure> 
 
 /// The grid with every vertex that light reaches: only a file that breaks a rule for writers (IVG-EXP-04) lacks some.
 fn without_gaps(path: &Path, grid: IrradianceGrid) -> IrradianceGrid {
-    let lacks = |&vertex: &usize| grid.is_valid(vertex) && !grid.is_received(vertex);
-    let missing = (0..grid.vertex_count()).filter(lacks).count();
+    let missing = reading::missing(&grid);
     if missing == 0 {
         return grid;
     }
     eprintln!(
-        "ivg: warning: {}: vertices in no bundle, filled from those around them: {missing}",
-        path.display()
+        "ivg: warning: {}: {missing} of {} vertices are in no bundle and filled",
+        path.display(),
+        grid.vertex_count()
     );
     ivg_grid::fill(&grid, &FillOptions::default())
 }

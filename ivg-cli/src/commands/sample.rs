@@ -51,11 +51,12 @@ fn grid(arguments: &SampleArguments) -> Result<(IrradianceGrid, Encoding), Failu
         return Ok((grid, header.encoding));
     }
     let (header, grid, _) = reading::grid(path, &bytes)?;
-    let (received, all) = (grid.received_count(), grid.vertex_count());
-    if received < all {
+    let missing = reading::missing(&grid);
+    if missing > 0 {
         eprintln!(
-            "ivg: warning: {}: {received} of {all} vertices are there; the others are filled",
-            path.display()
+            "ivg: warning: {}: {missing} of {} vertices are missing and filled",
+            path.display(),
+            grid.vertex_count()
         );
     }
     Ok((ivg_grid::fill(&grid, &FillOptions::default()), header.encoding))
