@@ -288,6 +288,16 @@ fn bundles_that_cannot_be_written_are_named() {
     let missing = lattice.coords(good[0][0]);
     assert_eq!(with(|b| b.truncate(0)), Some(EncodeError::VertexMissing { vertex: [1, 0, 0] }));
     assert_eq!(with(|b| drop(b.remove(0))), Some(EncodeError::VertexMissing { vertex: missing }));
+    // With a validity section as well, unless it says that the vertex lies inside geometry.
+    let mut validity = [255; 27];
+    let short = &good[1..];
+    let with_validity = |validity: &[u8]| {
+        let source = GridSource { validity: Some(validity), ..GridSource::new(lattice, &values) };
+        encode(&GridSource { bundles: Some(short), ..source }, &explicit).err()
+    };
+    assert_eq!(with_validity(&validity), Some(EncodeError::VertexMissing { vertex: missing }));
+    validity[good[0][0] as usize] = 0;
+    assert_eq!(with_validity(&validity), None);
     let twice = with(|b| b[3][1] = b[0][0]);
     assert_eq!(twice, Some(EncodeError::VertexTwice { bundle: 3, vertex: missing }));
     for error in [twice, merged, with(|b| b[1][0] = 26)] {

@@ -119,6 +119,23 @@ fn a_prefix_is_worth_more_than_that_of_an_even_spread() {
 }
 
 #[test]
+fn a_vertex_unlike_its_surroundings_does_not_stand_for_them() {
+    // Even light, but for one vertex in the middle. Nothing else is wrong, so by errors alone it comes first; but then all of
+    // its empty block would be filled with it, and its neighbours are worth more.
+    let lattice = lattice([16, 16, 16]);
+    let odd = lattice.index(7, 7, 7);
+    let mut vectors: Vec<HemisphereVectors> = vec![[[[1.0; 3]; 3]; 6]; 4096];
+    vectors[odd as usize] = [[[50.0; 3]; 3]; 6];
+    let grid = IrradianceGrid::from_parts(lattice, vectors, vec![255; 4096], vec![0; 4096]).expect("sound");
+    let first = |look_ahead| {
+        let options = ImportanceOptions { look_ahead, first_bundle: 1, ..ImportanceOptions::new(256) };
+        bundles(&grid, &options)[0].clone()
+    };
+    assert_eq!(first(false), [odd]);
+    assert_ne!(first(true), [odd]);
+}
+
+#[test]
 fn surfaces_come_first_where_they_weigh_more() {
     let grid = grid([16, 16, 16]);
     let near = near_surfaces(&grid);
