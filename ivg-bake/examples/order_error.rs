@@ -34,6 +34,9 @@ type AnyError = Box<dyn std::error::Error>;
 /// Shares of the bytes at which errors are printed.
 const SHARES: [f64; 6] = [0.0025, 0.01, 0.05, 0.25, 0.5, 0.75];
 
+/// Vertices of the bundles in which vertices inside geometry are left out of the order `octree`.
+const FIRST_BUNDLE: usize = 32;
+
 /// Vertices per slice that bound a bundle of the order `explicit`. The others take 1, so that the first share is not empty.
 const LARGEST_PER_SLICE: u32 = 64;
 
@@ -107,7 +110,7 @@ fn print(name: &str, grid: &IrradianceGrid) -> Result<(), AnyError> {
     let total: u64 = slices.iter().map(|(_, bytes)| bytes).sum();
     let spread: Vec<u64> = octree.iter().flat_map(|(vertices, _)| vertices).copied().collect();
     let reachable: Vec<u64> = spread.into_iter().filter(|&v| grid.is_valid(v as usize)).collect();
-    let reachable: Vec<Vec<u64>> = reachable.chunks(largest.min(64)).map(<[u64]>::to_vec).collect();
+    let reachable: Vec<Vec<u64>> = reachable.chunks(largest.min(FIRST_BUNDLE)).map(<[u64]>::to_vec).collect();
     row("slices", grid, &near, &slices, total);
     row("octree", grid, &near, &octree, total);
     row(
