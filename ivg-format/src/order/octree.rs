@@ -81,15 +81,11 @@ impl Octree {
         while let Some(cut) = cell.cut() {
             let hash = splitmix64(self.seed, 32 * vertex + depth) as usize & (cut.children() - 1);
             let (turn, rank_in_child) = self.turn(&cell, &cut, hash, rank);
-            let mut which = cut.number(turn, hash);
-            for &axis in cut.axes() {
-                // Arithmetic, not a branch: which part it is cannot be predicted.
-                let (lower, upper) = (cut.lower[axis], which as u32 & 1);
-                cell.low[axis] += upper * lower;
-                cell.extent[axis] = lower - upper * (2 * lower - cell.extent[axis]);
-                vertex += strides[axis] * u64::from(upper * lower);
-                which >>= 1;
+            let child = cut.child(&cell, cut.number(turn, hash));
+            for axis in 0..3 {
+                vertex += strides[axis] * u64::from(child.low[axis] - cell.low[axis]);
             }
+            cell = child;
             (rank, depth) = (rank_in_child, depth + 1);
         }
         vertex
@@ -169,61 +165,48 @@ impl Cell {
         if longest == 1 {
             return None;
         }
-        let mut cut = Cut { axes: [0; 3], count: 0, lower: self.extent };
-        for (axis, &extent) in self.extent.iter().enumerate() {
-            // An extent of 1 never passes: the longest is 2 or more.
-            if 2 * extent > longest {
-                cut.axes[cut.count] = axis;
-                cut.count += 1;
-                cut.lower[axis] = extent - extent / 2;
-            }
-        }
-        Some(cut)
+        // An extent of 1 never passes: the longest is 2 or more.
+        let along = self.extent.map(|extent| u32::from(2 * extent > longest));
+        Some(Cut { along, count: along[0] + along[1] + along[2] })
     }
 }
 
-/// Along which axes a cell is cut, and where.
+/// Along which axes a cell is cut. All that follows is arithmetic without branches, for which part a vertex is in cannot be
+/// predicted.
 #[derive(Clone, Copy, Debug)]
 struct Cut {
-    /// The first `count`, ascending; at least one.
-    axes: [usize; 3],
-    count: usize,
-    /// Extent of the lower part; where the axis is not cut, of the cell.
-    lower: [u32; 3],
+    /// 1 for the axes that are cut, else 0.
+    along: [u32; 3],
+    /// How many, at least one.
+    count: u32,
 }
 
 impl Cut {
-    fn axes(&self) -> &[usize] {
-        &self.axes[..self.count]
-    }
-
     fn children(&self) -> usize {
         1 << self.count
     }
 
     /// The number of the child whose turn it is (IVG-OCT-04).
     fn number(&self, turn: usize, hash: usize) -> usize {
-        usize::from(TURNS[self.count - 1][turn]) ^ hash
+        usize::from(TURNS[self.count as usize - 1][turn]) ^ hash
     }
 
     /// Vertices of the smallest child: the upper part along every axis.
     fn smallest(&self, cell: &Cell) -> u64 {
-        let mut upper = cell.extent;
-        for &axis in self.axes() {
-            upper[axis] -= self.lower[axis];
-        }
-        upper.iter().map(|&extent| u64::from(extent)).product()
+        (0..3).map(|axis| u64::from(cell.extent[axis] >> self.along[axis])).product()
     }
 
+    /// The child with this number: one bit for each axis that is cut, set for the upper part.
     fn child(&self, cell: &Cell, number: usize) -> Cell {
-        let mut child = *cell;
-        for (bit, &axis) in self.axes().iter().enumerate() {
-            if number >> bit & 1 == 0 {
-                child.extent[axis] = self.lower[axis];
-            } else {
-                child.low[axis] += self.lower[axis];
-                child.extent[axis] -= self.lower[axis];
-            }
+        let (mut child, mut bits) = (*cell, number as u32);
+        for axis in 0..3 {
+            let (cut, extent) = (self.along[axis], cell.extent[axis]);
+            let upper = bits & cut;
+            bits >>= cut;
+            // The whole extent where the axis is not cut.
+            let lower = extent - cut * (extent / 2);
+            child.low[axis] += upper * lower;
+            child.extent[axis] = lower - upper * (2 * lower - extent);
         }
         child
     }
