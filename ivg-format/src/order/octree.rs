@@ -82,8 +82,8 @@ impl Octree {
             let hash = splitmix64(self.seed, 32 * vertex + depth) as usize & (cut.children() - 1);
             let (turn, rank_in_child) = self.turn(&cell, &cut, hash, rank);
             let child = cut.child(&cell, cut.number(turn, hash));
-            for axis in 0..3 {
-                vertex += strides[axis] * u64::from(child.low[axis] - cell.low[axis]);
+            for ((stride, to), from) in strides.iter().zip(child.low).zip(cell.low) {
+                vertex += stride * u64::from(to - from);
             }
             cell = child;
             (rank, depth) = (rank_in_child, depth + 1);
