@@ -70,7 +70,9 @@ pub use grid::{BLOCKED_BITS, DEFAULT_MAX_VERTICES, IrradianceGrid, VALIDITY_FREE
 pub use ivg_format::{HemisphereVectors, Quantity, RadianceHarmonics, Values, VertexValues};
 pub use lookup::SURFACE_BIAS;
 pub use metrics::{IrradianceError, relative_rmse};
-pub use reconstruct::{Reconstruction, TANGENTIAL_SHARE, reconstruct, reconstruct_signed, three_vector};
+pub use reconstruct::{
+    Reconstruction, TANGENTIAL_LOSS, reconstruct, reconstruct_signed, tangential_weights, three_vector,
+};
 pub use separate::SeparateTextures;
 pub use spatial::SpatialFilter;
 pub use texture::{FLAG_USABLE, INVALID_TEXTURE_WEIGHT, texture_count};

@@ -5,11 +5,11 @@ use ivg_format::{Encoding, Quantity};
 
 use crate::HemisphereVectors;
 
-/// How much of the tangential components [`Reconstruction::ThreeVector`] counts.
+/// How much of a tangential component [`Reconstruction::ThreeVector`] leaves out where it points along the normal.
 ///
-/// Uniform light and the axes are exact for any share; of 0.6, 0.7 and 0.8, 0.7 has the smallest error in broad light and
-/// in light of several lobes.
-pub const TANGENTIAL_SHARE: f32 = 0.7;
+/// Uniform light and the axes are exact for any; the weight 1 of small components makes the formula exact to first order
+/// around the axes in light of degree 1. A half is the best of round numbers in light of several lobes.
+pub const TANGENTIAL_LOSS: f32 = 0.5;
 
 /// A formula for the irradiance of a surface from the six irradiance vectors at its point.
 ///
@@ -19,7 +19,7 @@ pub const TANGENTIAL_SHARE: f32 = 0.7;
 /// | | formula, before max(0, ·) | vectors read |
 /// |---|---|---|
 /// | [`NSquared`](Self::NSquared) | `Σ_i n_i² (I_i · n)` | 3 |
-/// | [`ThreeVector`](Self::ThreeVector) | `Σ_i n_i² (s_i I_i[i] + t Σ_{j≠i} n_j I_i[j])`, t = 0.7 | 3 |
+/// | [`ThreeVector`](Self::ThreeVector) | `Σ_i n_i² (s_i I_i[i] + Σ_{j≠i} n_j (1 − ½\|n_j\|) I_i[j])` | 3 |
 /// | [`SixVector`](Self::SixVector) | `½ [Σ_j n_j V_j + Σ_j n_j² A_j[j] + ½ Σ_{j≠k} n_j n_k A_j[k]]`, `V_j = (I_+j + I_-j)[j]`, `A_j = I_+j − I_-j` | 6 |
 ///
 /// All three are exact for normals along the axes and continuous in the normal. The first is what both papers print
@@ -117,22 +117,29 @@ pub fn reconstruct(method: Reconstruction, vectors: &HemisphereVectors, n: Vec3)
 pub fn reconstruct_signed(method: Reconstruction, vectors: &HemisphereVectors, n: Vec3) -> Vec3 {
     match method {
         Reconstruction::NSquared => n_squared(vectors, n),
-        Reconstruction::ThreeVector => three_vector(vectors, n, TANGENTIAL_SHARE),
+        Reconstruction::ThreeVector => three_vector(vectors, n, tangential_weights(n)),
         Reconstruction::SixVector => six_vector(vectors, n),
         Reconstruction::Harmonics => panic!("irradiance vectors cannot be reconstructed by sh2"),
     }
 }
 
-/// [`Reconstruction::ThreeVector`] with another share of the tangential components, before the cut at zero \[W/m²\].
+/// What the tangential components count in [`Reconstruction::ThreeVector`]: `n_j (1 − |n_j| / 2)`.
 #[must_use]
-pub fn three_vector(vectors: &HemisphereVectors, n: Vec3, tangential_share: f32) -> Vec3 {
+#[inline]
+pub fn tangential_weights(n: Vec3) -> Vec3 {
+    n * (Vec3::ONE - TANGENTIAL_LOSS * n.abs())
+}
+
+/// [`Reconstruction::ThreeVector`] with other weights of the tangential components, before the cut at zero \[W/m²\].
+#[must_use]
+pub fn three_vector(vectors: &HemisphereVectors, n: Vec3, tangential: Vec3) -> Vec3 {
     per_channel(|channel| {
         let mut sum = 0.0;
         for axis in 0..3 {
             let vector = vectors[facing(axis, n)][channel];
             let own = if n[axis] < 0.0 { -vector[axis] } else { vector[axis] };
-            let tangential = others(axis).map(|other| n[other] * vector[other]);
-            sum += n[axis] * n[axis] * (own + tangential_share * (tangential[0] + tangential[1]));
+            let [a, b] = others(axis).map(|other| tangential[other] * vector[other]);
+            sum += n[axis] * n[axis] * (own + (a + b));
         }
         sum
     })

@@ -222,9 +222,11 @@ fn every_component_counts_as_the_formulas_say() {
             + 9.0 * (-2.0 * y[0] + 3.0 * y[1] + 6.0 * y[2])
             + 36.0 * (-2.0 * z[0] + 3.0 * z[1] + 6.0 * z[2]))
             / 343.0;
-        let three = (4.0 * (-x[0] + 0.7 * (3.0 * x[1] + 6.0 * x[2]) / 7.0)
-            + 9.0 * (y[1] + 0.7 * (-2.0 * y[0] + 6.0 * y[2]) / 7.0)
-            + 36.0 * (z[2] + 0.7 * (-2.0 * z[0] + 3.0 * z[1]) / 7.0))
+        // n_j (1 − |n_j| / 2) for the three axes: −2/7 · 6/7, 3/7 · 5.5/7, 6/7 · 4/7.
+        let [a, b, c] = [-12.0 / 49.0, 16.5 / 49.0, 24.0 / 49.0];
+        let three = (4.0 * (-x[0] + b * x[1] + c * x[2])
+            + 9.0 * (y[1] + a * y[0] + c * y[2])
+            + 36.0 * (z[2] + a * z[0] + b * z[1]))
             / 49.0;
         let sum = |axis: usize| v(2 * axis)[axis] + v(2 * axis + 1)[axis];
         let difference = |axis: usize, component: usize| v(2 * axis)[component] - v(2 * axis + 1)[component];

@@ -1,6 +1,6 @@
 use std::mem::offset_of;
 
-use ivg_grid::{FLAG_USABLE, TANGENTIAL_SHARE};
+use ivg_grid::{FLAG_USABLE, TANGENTIAL_LOSS};
 use wgpu::naga;
 use wgpu::naga::{Expression, Literal, TypeInner};
 
@@ -97,7 +97,7 @@ fn constants_have_the_same_value_on_both_sides() {
         ("HARMONIC_MIXED", f64::from(HARMONIC_MIXED)),
         ("HARMONIC_ZONAL", f64::from(HARMONIC_ZONAL)),
         ("HARMONIC_SQUARE", f64::from(HARMONIC_SQUARE)),
-        ("TANGENTIAL_SHARE", f64::from(TANGENTIAL_SHARE)),
+        ("TANGENTIAL_LOSS", f64::from(TANGENTIAL_LOSS)),
         ("FLAG_USABLE", f64::from(FLAG_USABLE)),
         ("FLAG_CLEAR_CELL", f64::from(FLAG_CLEAR_CELL)),
         ("FLAG_CLEAR_BLOCK", f64::from(FLAG_CLEAR_BLOCK)),

@@ -19,7 +19,7 @@ const HARMONIC_LINEAR: f32 = 1.0233267;
 const HARMONIC_MIXED: f32 = 0.8580855;
 const HARMONIC_ZONAL: f32 = 0.24770795;
 const HARMONIC_SQUARE: f32 = 0.42904276;
-const TANGENTIAL_SHARE: f32 = 0.7;
+const TANGENTIAL_LOSS: f32 = 0.5;
 
 // Vertices that a careful lookup reads: sets of them are the bits of two words.
 struct Support {
@@ -204,7 +204,8 @@ fn hemisphere_weight(hemisphere: u32, n: vec3f) -> vec3f {
     if frame.reconstruction == RECONSTRUCT_N_SQUARED {
         return squared * n;
     }
-    return squared * (select(own, -own, negative) + TANGENTIAL_SHARE * (n - component * own));
+    let tangential = n * (1.0 - TANGENTIAL_LOSS * abs(n));
+    return squared * (select(own, -own, negative) + tangential - tangential[axis] * own);
 }
 
 // Lookup where geometry obstructs: only vertices on the lookup's side count.
