@@ -12,7 +12,10 @@ const LONGEST_FILE: usize = 600;
 /// Lines that a `lib.rs` may have at most: documentation, modules, re-exports.
 const LONGEST_LIB: usize = 200;
 /// Files that may be longer than [`LONGEST_FILE`], each with its reason.
-const LONG_FILES: &[(&str, &str)] = &[];
+const LONG_FILES: &[(&str, &str)] = &[
+    ("spec/tables/clauses.toml", "a list: one entry for each clause, with its tests"),
+    ("spec/tables/errors.toml", "a list: one entry for each error code"),
+];
 /// Extensions of files that people write code or text in.
 const SOURCES: [&str; 11] = ["rs", "wgsl", "md", "toml", "sh", "py", "js", "ts", "c", "h", "yml"];
 /// What may not be left in the sources. In pieces, so that this file does not contain them.

@@ -1,4 +1,4 @@
-//! The tables of vertex orders, against what the encoder writes and what the header says.
+//! The orders of `spec/tables/orders.toml`, against what the encoder writes and what the header says.
 
 use super::rows;
 use ivg_format::{

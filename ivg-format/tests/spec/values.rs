@@ -1,4 +1,4 @@
-//! Numbers that the documents print, computed by this code.
+//! Numbers that the documents print and those of `spec/tables/values.toml`, computed by this code.
 
 use super::{read, rows};
 use ivg_format::quant::{direction, rgb9e5};
