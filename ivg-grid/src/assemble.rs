@@ -1,8 +1,13 @@
 //! Between the file format and the grid: decoder events into vertices, and a grid as something to encode.
 
-use ivg_format::{Event, GridSource, Header, Limits, decode_all};
+use ivg_format::{
+    Bundle, Event, GridSource, Header, HemisphereVectors, Limits, Quantity, RadianceHarmonics, decode_all,
+};
 
 use crate::{GridError, IrradianceGrid, VALIDITY_FREE};
+
+/// Vertices that are decoded at once: enough to be fast, few enough to stay in the nearest cache.
+const BLOCK: usize = 64;
 
 impl IrradianceGrid {
     /// Takes over what an event brings: the values of a bundle or of the corners, or a block of validity and blocked
@@ -21,9 +26,7 @@ impl IrradianceGrid {
             Event::Corners(bundle) | Event::Bundle(bundle) => {
                 self.check_lattice(bundle.header())?;
                 if !self.is_stale(bundle.header().content_id, bundle.id(), bundle.generation()) {
-                    for (vertex, values) in bundle.iter() {
-                        self.set(address(vertex), values);
-                    }
+                    self.receive(bundle);
                 }
                 Ok(())
             }
@@ -40,6 +43,36 @@ impl IrradianceGrid {
                 Ok(())
             }
             _ => Ok(()),
+        }
+    }
+
+    /// Takes over the values of a bundle of the same lattice and quantity.
+    fn receive(&mut self, bundle: &Bundle<'_>) {
+        let mut vertices = bundle.vertices().map(address);
+        let blocks = (0..bundle.len()).step_by(BLOCK).map(|first| first..bundle.len().min(first + BLOCK));
+        match self.quantity() {
+            Quantity::Vectors => {
+                let mut values = [HemisphereVectors::default(); BLOCK];
+                for block in blocks {
+                    let values = &mut values[..block.len()];
+                    bundle.read_vectors(block.start, values);
+                    values
+                        .iter()
+                        .zip(vertices.by_ref())
+                        .for_each(|(values, vertex)| self.set(vertex, values));
+                }
+            }
+            Quantity::Radiance => {
+                let mut values = [RadianceHarmonics::default(); BLOCK];
+                for block in blocks {
+                    let values = &mut values[..block.len()];
+                    bundle.read_radiance(block.start, values);
+                    values
+                        .iter()
+                        .zip(vertices.by_ref())
+                        .for_each(|(values, vertex)| self.set(vertex, values));
+                }
+            }
         }
     }
 

@@ -1,5 +1,6 @@
 use ivg_format::{
-    Decoder, EncodeOptions, Encoding, Lattice, RecordId, Step, Verdict, decode_record, encode, encode_record,
+    Decoder, EncodeOptions, Encoding, Lattice, RecordId, Step, Values, Verdict, decode_record, encode,
+    encode_record,
 };
 
 use super::*;
@@ -176,4 +177,21 @@ fn a_stale_record_is_ignored_and_a_newer_one_replaces() {
     decode_all(&other, &Limits::default(), |event| read.accept(&event).expect("the same lattice"))
         .expect("a whole file");
     assert_eq!(read, new);
+}
+
+#[test]
+fn bundles_longer_than_a_block_are_received_whole() {
+    // 504 vertices less eight corners in one bundle: seven blocks and a part of one.
+    let lattice = Lattice::new([9, 8, 7], [0.0; 3], [1.0; 3]).expect("a box");
+    let vectors: Vec<HemisphereVectors> = (0..504).map(|n| [[[n as f32; 3]; 3]; 6]).collect();
+    let radiance: Vec<RadianceHarmonics> =
+        (1..505).map(|n| [[n as f32, 0., 0., 0., 0., 0., 0., 0., 0.]; 3]).collect();
+    let read = |values: Values<'_>, encoding| {
+        let options = EncodeOptions { encoding, vertices_per_slice: 64, ..EncodeOptions::default() };
+        let file = encode(&GridSource::new(lattice, values), &options).expect("a sound grid");
+        IrradianceGrid::from_file(&file, &Limits::default()).expect("a whole file").0
+    };
+    assert_eq!(read((&vectors).into(), Encoding::VectorsF32).vectors(), vectors);
+    // Means below 512 are exact in nine bits.
+    assert_eq!(read((&radiance).into(), Encoding::Sh2).radiance()[..], radiance[..]);
 }
