@@ -29,7 +29,7 @@ pub const TANGENTIAL_LOSS: f32 = 0.5;
 /// degree 2, and the most accurate of the three (but under one or two point-like lights) also where the channels of a vector
 /// share one direction: it takes the net flux and the squares from components along the hemispheres' axes, which packing
 /// keeps. The second reads half as many vectors, of which packing bends the tangential components: on a baked room it is
-/// off by 4.5 % where the third is by 2.5 % (in floating-point vectors 2.4 and 1.8 %; example `accuracy` of the baker).
+/// off by 4.4 % where the third is by 2.5 % (in floating-point vectors 2.2 and 1.8 %; example `accuracy` of the baker).
 /// `cargo run -p ivg-grid --release --example reconstruction_error` prints how far each is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
