@@ -257,6 +257,19 @@ impl Level {
         }
     }
 
+    /// Calls `found` with every node that light passes to, in order of the directions and, in one, of the nodes.
+    #[inline]
+    pub(crate) fn for_each_link(&self, node: usize, mut found: impl FnMut(usize)) {
+        match self.neighbours(node) {
+            Some(neighbours) => {
+                neighbours.into_iter().filter(|&other| other != node).for_each(found);
+            }
+            None => (0..DIRECTIONS)
+                .flat_map(|direction| self.links(node, direction))
+                .for_each(|other| found(other as usize)),
+        }
+    }
+
     /// The nodes of level 0 between two neighbours along an axis, plus one.
     pub(crate) fn stride(&self, axis: usize) -> usize {
         [1, self.dims[0] as usize, self.dims[0] as usize * self.dims[1] as usize][axis]

@@ -22,6 +22,18 @@ impl Marks {
         self.words[node / 64] >> (node % 64) & 1 == 1
     }
 
+    /// Whether every node is marked.
+    pub(super) fn is_full(&self) -> bool {
+        let mut all = Self::new(self.len);
+        all.fill();
+        self.words == all.words
+    }
+
+    /// Whether no node is marked.
+    pub(super) fn is_empty(&self) -> bool {
+        self.words.iter().all(|&word| word == 0)
+    }
+
     pub(super) fn clear(&mut self) {
         self.words.fill(0);
     }
@@ -62,10 +74,22 @@ impl Marks {
         self.words.len()
     }
 
-    /// The marked nodes of a group, ascending.
+    /// The bits of a group, that of its first node lowest.
     #[inline]
-    pub(super) fn group(&self, group: usize) -> impl Iterator<Item = usize> + use<> {
-        nodes(group, self.words[group])
+    pub(super) fn word(&self, group: usize) -> u64 {
+        self.words[group]
+    }
+
+    /// Marks the nodes of a group whose bits are set.
+    #[inline]
+    pub(super) fn insert_word(&mut self, group: usize, word: u64) {
+        self.words[group] |= word;
+    }
+
+    /// Replaces the bits of each group.
+    #[inline]
+    pub(super) fn map_words(&mut self, new: impl Fn(usize, u64) -> u64) {
+        self.words.iter_mut().enumerate().for_each(|(group, word)| *word = new(group, *word));
     }
 
     /// The marked nodes and those a stride before or after them.
@@ -104,7 +128,7 @@ impl Marks {
 
 /// The nodes of a group whose bits are set.
 #[inline]
-fn nodes(group: usize, mut word: u64) -> impl Iterator<Item = usize> {
+pub(super) fn nodes(group: usize, mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = (word != 0).then(|| word.trailing_zeros() as usize)?;
         word &= word - 1;

@@ -1,7 +1,7 @@
 //! One run of push-pull through one pyramid, and what it keeps for the next.
 
-use super::marks::Marks;
-use super::row::{Range, Row, interpolate, mean, replace, smooth};
+use super::marks::{Marks, nodes};
+use super::row::{Range, Row, interpolate, interpolate_both, mean, replace, smooth};
 use super::{FillOptions, Smoothing};
 use crate::pyramid::{DIRECTIONS, Level, NONE, Pyramid};
 
@@ -13,17 +13,6 @@ const FACING: [u8; DIRECTIONS] =
 /// of the vertices have been received, by up to 5 % where three quarters have, and make more vertices depend on each
 /// arrival.
 const WELL_KNOWN: u8 = 4;
-
-/// How a node came to its value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
-    /// It has none: nothing known is connected to it.
-    Without,
-    /// Interpolated.
-    Pushed,
-    /// Received, or the mean of children that are known.
-    Known,
-}
 
 /// The values of all nodes of a pyramid, and which of them have to be computed again.
 ///
@@ -45,7 +34,14 @@ pub(super) struct PushPull<const W: usize> {
 /// The values of one level.
 #[derive(Clone, Debug)]
 struct LevelValues<const W: usize> {
-    state: Vec<State>,
+    /// Nodes that are received, or the mean of children that are known.
+    known: Marks,
+    /// Nodes that have a value: the known ones and those that were pushed.
+    valued: Marks,
+    /// Nodes with a parent. No other node is pushed.
+    inner: Marks,
+    /// Nodes whose number is one less than that of their sibling along x.
+    pairs: Marks,
     /// Values, smoothed where they were pushed. Empty at level 0.
     rows: Vec<Row<W>>,
     /// Room for values before smoothing: for those of all nodes, at level 0 for those of the nodes around the one that
@@ -53,6 +49,10 @@ struct LevelValues<const W: usize> {
     rough: Vec<Row<W>>,
     /// Number of known neighbours of each node, 255 for more than that.
     known_around: Vec<u8>,
+    /// Nodes with a known neighbour.
+    near: Marks,
+    /// Nodes with [`WELL_KNOWN`] known neighbours or more.
+    surrounded: Marks,
     /// Nodes whose value has changed in this update.
     changed: Marks,
     /// For each node the octants, one bit each, whose pushed children have to be computed again. Empty at level 0.
@@ -76,9 +76,26 @@ impl<const W: usize> PushPull<W> {
                 (true, 0) => len.min(64 * 2 * lag(level)),
                 (true, _) => len,
             };
+            let (mut inner, mut pairs) = (Marks::new(len), Marks::new(len));
+            for node in (0..len).filter(|&node| level.parents[node] != NONE) {
+                inner.insert(node);
+                let next = node + 1;
+                if next < len
+                    && level.parents[next] == level.parents[node]
+                    && level.octant(node) + 1 == level.octant(next)
+                    && level.octant(node).is_multiple_of(2)
+                {
+                    pairs.insert(node);
+                }
+            }
             LevelValues {
-                state: vec![State::Without; len],
+                known: Marks::new(len),
+                valued: Marks::new(len),
+                inner,
+                pairs,
                 known_around: vec![0; len],
+                near: Marks::new(len),
+                surrounded: Marks::new(len),
                 rows: vec![[0.0; W]; if index == 0 { 0 } else { len }],
                 rough: vec![[0.0; W]; window],
                 changed: Marks::new(len),
@@ -91,10 +108,17 @@ impl<const W: usize> PushPull<W> {
 
     /// The row of a vertex is known from now on, or has been replaced.
     pub(super) fn know(&mut self, vertex: usize) {
-        let LevelValues { state, known_around, changed, .. } = &mut self.levels[0];
-        changed.insert(vertex);
-        if std::mem::replace(&mut state[vertex], State::Known) != State::Known {
-            count_known(&self.pyramid.levels[0], known_around, vertex);
+        self.levels[0].changed.insert(vertex);
+        self.levels[0].become_known(&self.pyramid.levels[0], vertex);
+    }
+
+    /// The rows of these vertices are known from now on, or have been replaced.
+    pub(super) fn know_all(&mut self, vertices: &Marks) {
+        self.levels[0].changed.join(vertices);
+        for group in 0..vertices.groups() {
+            for vertex in nodes(group, vertices.word(group) & !self.levels[0].known.word(group)) {
+                self.levels[0].become_known(&self.pyramid.levels[0], vertex);
+            }
         }
     }
 
@@ -109,28 +133,26 @@ impl<const W: usize> PushPull<W> {
         for (index, level) in self.levels.iter_mut().enumerate() {
             if index > 0 {
                 level.known_around.fill(0);
+                let marks = [&mut level.known, &mut level.near, &mut level.surrounded];
+                marks.into_iter().for_each(Marks::clear);
             }
-            for state in &mut level.state {
-                if index > 0 || *state == State::Pushed {
-                    *state = State::Without;
-                }
-            }
+            level.valued.clone_from(&level.known);
         }
     }
 
-    /// Whether a vertex has a value.
-    pub(super) fn has_value(&self, vertex: usize) -> bool {
-        self.levels[0].state[vertex] != State::Without
+    /// The vertices that have a value.
+    pub(super) fn valued(&self) -> &Marks {
+        &self.levels[0].valued
     }
 
     /// Whether any vertex is known.
     pub(super) fn knows_any(&self) -> bool {
-        self.levels[0].state.contains(&State::Known)
+        !self.levels[0].known.is_empty()
     }
 
-    /// Vertices whose rows the last [`update`](Self::update) changed, or that were known before it.
-    pub(super) fn changed(&self) -> impl Iterator<Item = usize> {
-        self.levels[0].changed.iter()
+    /// Vertices whose rows the last [`update`](Self::update) wrote, or that were known before it.
+    pub(super) fn changed(&self) -> &Marks {
+        &self.levels[0].changed
     }
 
     /// How large numbers are that may be among the rows.
@@ -167,25 +189,20 @@ impl<const W: usize> PushPull<W> {
         let finer_rows = if index == 1 { rows } else { &finer.rows };
         let level = &self.pyramid.levels[index];
         let parents = &self.pyramid.levels[index - 1].parents;
-        if self.everything {
-            coarser.changed.fill();
-        } else {
-            let parents = finer.changed.iter().map(|node| parents[node]).filter(|&parent| parent != NONE);
-            parents.for_each(|parent| coarser.changed.insert(parent as usize));
-        }
-        let LevelValues { state, known_around, rows, changed, .. } = coarser;
+        let sources = if self.everything { &finer.known } else { &finer.changed };
+        let touched = sources.iter().map(|node| parents[node]).filter(|&parent| parent != NONE);
+        touched.for_each(|parent| coarser.changed.insert(parent as usize));
+        let mut changed = std::mem::take(&mut coarser.changed);
         let mut mean = [0.0; W];
         changed.retain(|node| {
             let children = level.children(node).iter().map(|&child| child as usize);
-            if !mean_of_known(&mut mean, children, &finer.state, finer_rows, self.range) {
+            if !mean_of_known(&mut mean, children, &finer.known, finer_rows, self.range) {
                 return false;
             }
-            let first = std::mem::replace(&mut state[node], State::Known) != State::Known;
-            if first {
-                count_known(level, known_around, node);
-            }
-            replace(&mut rows[node], &mean) || first
+            let first = coarser.become_known(level, node);
+            replace(&mut coarser.rows[node], &mean) || first
         });
+        coarser.changed = changed;
     }
 
     /// The nodes below a level that have to be pushed again because values of it, or of known neighbours, have changed.
@@ -220,7 +237,7 @@ impl<const W: usize> PushPull<W> {
                 let children = parents.children(parent).iter().map(|&child| child as usize);
                 children
                     .filter(|&child| octants >> level.octant(child) & 1 == 1)
-                    .filter(|&child| !self.options.neighbours || finer.known_around[child] == 0)
+                    .filter(|&child| !self.options.neighbours || !finer.near.contains(child))
                     .for_each(|child| stale.insert(child));
             }
         }
@@ -241,76 +258,193 @@ impl<const W: usize> PushPull<W> {
         let stale = self.stale(index);
         let (below, above) = self.levels.split_at_mut(index);
         let (finer, coarser) = (&mut below[index - 1], &above[0]);
-        let LevelValues { state, known_around, rows: own_rows, rough, changed, .. } = finer;
-        let rows = if index == 1 { rows } else { own_rows.as_mut_slice() };
         let (level, parents) = (&self.pyramid.levels[index - 1], &self.pyramid.levels[index]);
-        let filled = |state: &[State], node: usize| {
-            let parent = level.parents[node];
-            state[node] != State::Known && parent != NONE && coarser.state[parent as usize] != State::Without
-        };
-        let with_neighbours = |node: usize| self.options.neighbours && known_around[node] > 0;
-        let pushed = |to: &mut Row<W>, state: &[State], rows: &[Row<W>], node: usize| {
-            if with_neighbours(node) {
-                known_neighbours(to, level, state, rows, node, self.range);
-            } else {
-                let parent = level.parents[node] as usize;
-                interpolated(to, parents, &coarser.rows, parent, level.octant(node), self.range);
-            }
-        };
+        let pushing = Pushing { options: self.options, level, parents, coarser, range: self.range };
+        if finer.rough.is_empty() {
+            pushing.push(finer, rows, &stale);
+        } else {
+            pushing.push_and_smooth(finer, rows, &stale);
+        }
+    }
+}
+
+impl<const W: usize> LevelValues<W> {
+    /// Makes a node known; says whether it has not been before.
+    #[inline]
+    fn become_known(&mut self, level: &Level, node: usize) -> bool {
+        let first = !self.known.contains(node);
+        if first {
+            self.known.insert(node);
+            self.valued.insert(node);
+            level.for_each_link(node, |other| {
+                let count = &mut self.known_around[other];
+                *count = count.saturating_add(1);
+                self.near.insert(other);
+                if *count >= WELL_KNOWN {
+                    self.surrounded.insert(other);
+                }
+            });
+        }
+        first
+    }
+}
+
+/// What the nodes of a level get their values from.
+#[derive(Clone, Copy)]
+struct Pushing<'a, const W: usize> {
+    options: FillOptions,
+    level: &'a Level,
+    parents: &'a Level,
+    coarser: &'a LevelValues<W>,
+    range: Range,
+}
+
+impl<const W: usize> Pushing<'_, W> {
+    /// Pushes stale nodes. `vertices` are the rows of level 0; other levels have their own.
+    fn push(&self, finer: &mut LevelValues<W>, vertices: &mut [Row<W>], stale: &Marks) {
+        let finest = finer.rows.is_empty();
         let mut row = [0.0; W];
-        if rough.is_empty() {
-            for node in stale.iter() {
-                if filled(state, node) {
-                    pushed(&mut row, state, rows, node);
-                    let before = std::mem::replace(&mut state[node], State::Pushed);
-                    if replace(&mut rows[node], &row) || before == State::Without {
-                        changed.insert(node);
+        for group in 0..stale.groups() {
+            let fresh = self.fillable(finer, group, stale.word(group));
+            let near = if self.options.neighbours { fresh & finer.near.word(group) } else { 0 };
+            let rows = if finest { &mut *vertices } else { &mut finer.rows };
+            let mut changed = fresh;
+            for node in nodes(group, near) {
+                known_neighbours(&mut row, self.level, &finer.known, rows, node, self.range);
+                if finest {
+                    rows[node] = row;
+                } else if !replace(&mut rows[node], &row) {
+                    changed &= !(1 << (node % 64));
+                }
+            }
+            if finest {
+                let rows = &mut rows[64 * group..];
+                self.interpolate(rows, group, fresh & !near, finer.pairs.word(group));
+            } else {
+                for node in nodes(group, fresh & !near) {
+                    self.interpolate_one(&mut row, node);
+                    if !replace(&mut rows[node], &row) {
+                        changed &= !(1 << (node % 64));
                     }
                 }
             }
-            return;
+            finer.changed.insert_word(group, changed | fresh & !finer.valued.word(group));
+            finer.valued.insert_word(group, fresh);
         }
+    }
 
+    /// Pushes stale nodes and smooths what has changed by that or lies next to it.
+    fn push_and_smooth(&self, finer: &mut LevelValues<W>, vertices: &mut [Row<W>], stale: &Marks) {
+        let finest = finer.rows.is_empty();
+        let groups = stale.groups();
+        let neighbours = if self.options.neighbours { u64::MAX } else { 0 };
         // What is smoothed again lies around what has changed, and needs the values before smoothing around it.
-        let is_smoothed = |node: usize| !self.options.neighbours || known_around[node] < WELL_KNOWN;
         let mut smooths = stale.clone();
-        smooths.join(changed);
-        smooths = around(level, index == 1, smooths);
-        smooths.retain(|node| filled(state, node) && is_smoothed(node));
-        let mut needed = around(level, index == 1, smooths.clone());
-        needed.join(&stale);
+        smooths.join(&finer.changed);
+        smooths = around(self.level, finest, smooths);
+        smooths.map_words(|group, word| {
+            self.fillable(finer, group, word) & !(finer.surrounded.word(group) & neighbours)
+        });
+        let mut needed = around(self.level, finest, smooths.clone());
+        needed.join(stale);
         // Smoothing follows so far behind that all neighbours have been pushed, and near enough to find them in the
         // cache.
-        let window = rough.len();
-        let lag = if index == 1 { lag(level) } else { needed.groups() };
-        for group in 0..needed.groups() + lag {
-            if group < needed.groups() {
-                for node in needed.group(group) {
-                    let to = &mut rough[node % window];
-                    if !filled(state, node) {
-                        *to = rows[node];
-                    } else if is_smoothed(node) {
-                        pushed(to, state, rows, node);
-                    } else if stale.contains(node) {
-                        pushed(to, state, rows, node);
-                        let before = std::mem::replace(&mut state[node], State::Pushed);
-                        if replace(&mut rows[node], to) || before == State::Without {
-                            changed.insert(node);
-                        }
-                    } else {
-                        *to = rows[node];
+        let window = finer.rough.len();
+        let lag = if finest { lag(self.level) } else { groups };
+        let (mut push_at, mut smooth_at) = (0, 0);
+        let next = |at: usize| if at + 64 >= window { 0 } else { at + 64 };
+        for group in 0..groups + lag {
+            if group < groups {
+                let needed = needed.word(group);
+                let fillable = self.fillable(finer, group, needed);
+                let surrounded = finer.surrounded.word(group) & neighbours;
+                let fresh = fillable & (stale.word(group) | !surrounded);
+                let near = fresh & finer.near.word(group) & neighbours;
+                let rows = if finest { &mut *vertices } else { &mut finer.rows };
+                for node in nodes(group, needed & !fresh) {
+                    finer.rough[push_at + node % 64] = rows[node];
+                }
+                for node in nodes(group, near) {
+                    let to = &mut finer.rough[push_at + node % 64];
+                    known_neighbours(to, self.level, &finer.known, rows, node, self.range);
+                }
+                let to = &mut finer.rough[push_at..];
+                self.interpolate(to, group, fresh & !near, finer.pairs.word(group));
+                let final_already = fresh & surrounded;
+                let mut changed = final_already;
+                for node in nodes(group, final_already) {
+                    let row = &finer.rough[push_at + node % 64];
+                    if finest {
+                        rows[node] = *row;
+                    } else if !replace(&mut rows[node], row) {
+                        changed &= !(1 << (node % 64));
+                    }
+                }
+                finer.changed.insert_word(group, changed | final_already & !finer.valued.word(group));
+                finer.valued.insert_word(group, final_already);
+                push_at = next(push_at);
+            }
+            let Some(group) = group.checked_sub(lag) else { continue };
+            let smooths = smooths.word(group);
+            let mut changed = smooths;
+            for node in nodes(group, smooths) {
+                let own = smooth_at + node % 64;
+                if finest {
+                    smoothed(&mut vertices[node], self.level, &finer.rough, node, own, self.range);
+                } else {
+                    let mut row = [0.0; W];
+                    smoothed(&mut row, self.level, &finer.rough, node, own, self.range);
+                    if !replace(&mut finer.rows[node], &row) {
+                        changed &= !(1 << (node % 64));
                     }
                 }
             }
-            let Some(group) = group.checked_sub(lag) else { continue };
-            for node in smooths.group(group) {
-                let differs = smoothed(&mut rows[node], level, rough, node, self.range);
-                let before = std::mem::replace(&mut state[node], State::Pushed);
-                if differs || before == State::Without {
-                    changed.insert(node);
+            finer.changed.insert_word(group, changed | smooths & !finer.valued.word(group));
+            finer.valued.insert_word(group, smooths);
+            smooth_at = next(smooth_at);
+        }
+    }
+
+    /// Those nodes of a group, among these, that are not known and whose parent has a value.
+    #[inline]
+    fn fillable(&self, finer: &LevelValues<W>, group: usize, among: u64) -> u64 {
+        let missing = among & finer.inner.word(group) & !finer.known.word(group);
+        let without = nodes(group, missing)
+            .filter(|&node| !self.coarser.valued.contains(self.level.parents[node] as usize));
+        without.fold(missing, |word, node| word & !(1 << (node % 64)))
+    }
+
+    /// Interpolates these nodes of a group between nodes of the coarser level. The first row belongs to its first node.
+    #[inline]
+    fn interpolate(&self, to: &mut [Row<W>], group: usize, these: u64, pairs: u64) {
+        let low = these & these >> 1 & pairs;
+        for node in nodes(group, low) {
+            let at = node % 64;
+            let both = to[at..].first_chunk_mut().expect("both in a group");
+            let (parent, octant) = (self.level.parents[node] as usize, self.level.octant(node));
+            let rows = &self.coarser.rows;
+            match self.parents.neighbours(parent) {
+                Some(neighbours) => {
+                    let side = |axis: usize| &rows[neighbours[2 * axis + (octant >> axis & 1)]];
+                    let along_x = [&rows[neighbours[0]], &rows[neighbours[1]]];
+                    interpolate_both(both, &rows[parent], along_x, [side(1), side(2)], self.range);
+                }
+                None => {
+                    let [low, high] = both;
+                    interpolated(low, self.parents, rows, parent, octant, self.range);
+                    interpolated(high, self.parents, rows, parent, octant + 1, self.range);
                 }
             }
         }
+        for node in nodes(group, these & !(low | low << 1)) {
+            self.interpolate_one(&mut to[node % 64], node);
+        }
+    }
+
+    #[inline]
+    fn interpolate_one(&self, to: &mut Row<W>, node: usize) {
+        let (parent, octant) = (self.level.parents[node] as usize, self.level.octant(node));
+        interpolated(to, self.parents, &self.coarser.rows, parent, octant, self.range);
     }
 }
 
@@ -319,26 +453,25 @@ impl<const W: usize> PushPull<W> {
 fn mean_of_known<const W: usize>(
     to: &mut Row<W>,
     nodes: impl ExactSizeIterator<Item = usize>,
-    state: &[State],
+    known: &Marks,
     rows: &[Row<W>],
     range: Range,
 ) -> bool {
     if nodes.len() > 8 {
-        let known: Vec<&Row<W>> =
-            nodes.filter(|&node| state[node] == State::Known).map(|node| &rows[node]).collect();
-        if !known.is_empty() {
-            mean(to, &known, range);
+        let rows: Vec<&Row<W>> = nodes.filter(|&node| known.contains(node)).map(|node| &rows[node]).collect();
+        if !rows.is_empty() {
+            mean(to, &rows, range);
         }
-        return !known.is_empty();
+        return !rows.is_empty();
     }
     // Without branches: which nodes are known cannot be foretold.
-    let (mut known, mut count) = ([&rows[0]; 8], 0);
+    let (mut found, mut count) = ([&rows[0]; 8], 0);
     for node in nodes {
-        known[count % 8] = &rows[node];
-        count += usize::from(state[node] == State::Known);
+        found[count % 8] = &rows[node];
+        count += usize::from(known.contains(node));
     }
     if count > 0 {
-        mean(to, &known[..count], range);
+        mean(to, &found[..count], range);
     }
     count > 0
 }
@@ -348,24 +481,17 @@ fn mean_of_known<const W: usize>(
 fn known_neighbours<const W: usize>(
     to: &mut Row<W>,
     level: &Level,
-    state: &[State],
+    known: &Marks,
     rows: &[Row<W>],
     node: usize,
     range: Range,
 ) -> bool {
     match level.neighbours(node) {
-        Some(neighbours) => mean_of_known(to, neighbours.into_iter(), state, rows, range),
+        Some(neighbours) => mean_of_known(to, neighbours.into_iter(), known, rows, range),
         None => {
             let all: Vec<u32> = (0..DIRECTIONS).flat_map(|direction| level.links(node, direction)).collect();
-            mean_of_known(to, all.iter().map(|&node| node as usize), state, rows, range)
+            mean_of_known(to, all.iter().map(|&node| node as usize), known, rows, range)
         }
-    }
-}
-
-/// Counts a node that has become known at its neighbours.
-fn count_known(level: &Level, known_around: &mut [u8], node: usize) {
-    for other in (0..DIRECTIONS).flat_map(|direction| level.links(node, direction)) {
-        known_around[other as usize] = known_around[other as usize].saturating_add(1);
     }
 }
 
@@ -393,33 +519,35 @@ fn interpolated<const W: usize>(
 }
 
 /// The value of a node after smoothing. All linked neighbours have values, for they are joined to each other; where
-/// there is none, the node's own stands for it. Node n is row n of `rough`, modulo their number.
-/// Says whether `to` had other bits before.
+/// there is none, the node's own stands for it. The node's row before smoothing is number `own`; those of its neighbours
+/// are as far from it as their numbers, beyond the end they begin again.
 #[inline]
 fn smoothed<const W: usize>(
     to: &mut Row<W>,
     level: &Level,
     rough: &[Row<W>],
     node: usize,
+    own: usize,
     range: Range,
-) -> bool {
-    let own = node % rough.len();
+) {
     match level.neighbours(node) {
-        Some(neighbours) => {
-            let place = |other: usize| {
-                // At most half of all rows away.
-                let place = own + rough.len() + other - node;
-                let place = if place >= rough.len() { place - rough.len() } else { place };
-                &rough[if place >= rough.len() { place - rough.len() } else { place }]
+        Some([a, b, c, d, e, f]) => {
+            let before = |other: usize| {
+                let place = own.wrapping_sub(node - other);
+                &rough[place.min(place.wrapping_add(rough.len()))]
             };
-            let [a, b, c, d, e, f] = neighbours;
-            smooth(to, &rough[own], [place(a), place(b), place(c), place(d), place(e), place(f)], range)
+            let after = |other: usize| {
+                let place = own + (other - node);
+                &rough[place.min(place.wrapping_sub(rough.len()))]
+            };
+            let neighbours = [before(a), after(b), before(c), after(d), before(e), after(f)];
+            smooth(to, &rough[own], neighbours, range);
         }
         None => {
             // Only above level 0, where each node has its own row.
             let means: [Row<W>; DIRECTIONS] =
                 std::array::from_fn(|direction| linked(level, rough, node, direction, range));
-            smooth(to, &rough[node], means.each_ref(), range)
+            smooth(to, &rough[node], means.each_ref(), range);
         }
     }
 }

@@ -37,30 +37,42 @@ impl Range {
 
 /// The mean of rows, into `to`.
 ///
-/// It stays between the smallest and the largest value, whatever the rounding: each row moves the mean by a share t of
-/// the way to it, the whole way for the first, which is exact, and at most half of it for the others. The difference
-/// and the product are rounded by less than 2^-22 together, so the exact sum does not pass the new value; rounding is
-/// monotone, so the rounded sum does not either.
+/// It stays between the smallest and the largest value, whatever the rounding. A mean of two, four or eight rows is a
+/// tree of sums and one multiplication: a sum of n numbers, n a power of two, is rounded to one between n times the
+/// smallest and n times the largest, for these are binary32 themselves and rounding is monotone; so is the product with
+/// 1/n, for what it would be of those is exact. Every other mean is put together from two that stay in the range: one
+/// moves by a share of at most a half of the way to the other. The difference and the product are rounded by less than
+/// 2^-22 together, so the exact sum does not pass that other value; rounding is monotone, so the rounded sum does not
+/// either.
 ///
 /// # Panics
 ///
 /// If there is no row.
 #[inline]
 pub(super) fn mean<const W: usize>(to: &mut Row<W>, rows: &[&Row<W>], range: Range) {
+    const THIRD: f32 = 1.0 / 3.0;
+    let towards = |from: f32, share: f32, other: f32| from + share * (other - from);
     match *rows {
         [a] => *to = *a,
-        [a, b] => chain(to, [a, b]),
-        [a, b, c] => chain(to, [a, b, c]),
-        [a, b, c, d] => chain(to, [a, b, c, d]),
-        [a, b, c, d, e] => chain(to, [a, b, c, d, e]),
-        [a, b, c, d, e, f] => chain(to, [a, b, c, d, e, f]),
-        [a, b, c, d, e, f, g] => chain(to, [a, b, c, d, e, f, g]),
-        [a, b, c, d, e, f, g, h] => chain(to, [a, b, c, d, e, f, g, h]),
+        [a, b] => write(to, |i| mean_of_2(a[i], b[i])),
+        [a, b, c] => write(to, |i| towards(mean_of_2(a[i], b[i]), THIRD, c[i])),
+        [a, b, c, d] => write(to, |i| mean_of_4([a[i], b[i], c[i], d[i]])),
+        [a, b, c, d, e] => write(to, |i| towards(mean_of_4([a[i], b[i], c[i], d[i]]), 0.2, e[i])),
+        [a, b, c, d, e, f] => {
+            write(to, |i| towards(mean_of_4([a[i], b[i], c[i], d[i]]), THIRD, mean_of_2(e[i], f[i])));
+        }
+        [a, b, c, d, e, f, g] => write(to, |i| {
+            let of_three = towards(mean_of_2(e[i], f[i]), THIRD, g[i]);
+            towards(mean_of_4([a[i], b[i], c[i], d[i]]), 3.0 / 7.0, of_three)
+        }),
+        [a, b, c, d, e, f, g, h] => {
+            write(to, |i| mean_of_8([a[i], b[i], c[i], d[i]], [e[i], f[i], g[i], h[i]]));
+        }
         _ => {
             let mut mean = *rows[0];
             for (n, row) in (2..).zip(&rows[1..]) {
                 let share = 1.0 / n as f32;
-                mean.iter_mut().zip(*row).for_each(|(mean, value)| *mean += share * (value - *mean));
+                mean.iter_mut().zip(*row).for_each(|(mean, value)| *mean = towards(*mean, share, *value));
             }
             *to = mean;
         }
@@ -68,24 +80,23 @@ pub(super) fn mean<const W: usize>(to: &mut Row<W>, rows: &[&Row<W>], range: Ran
     range.mend(to, rows);
 }
 
-/// The same for a number of rows that the compiler knows, so that it keeps the mean in registers.
-#[inline]
-fn chain<const N: usize, const W: usize>(to: &mut Row<W>, rows: [&Row<W>; N]) {
-    let shares: [f32; N] = std::array::from_fn(|n| 1.0 / (n + 1) as f32);
-    write(to, |i| {
-        let mut mean = rows[0][i];
-        for n in 1..N {
-            mean += shares[n] * (rows[n][i] - mean);
-        }
-        mean
-    });
+#[inline(always)]
+fn mean_of_2(a: f32, b: f32) -> f32 {
+    0.5 * (a + b)
+}
+
+#[inline(always)]
+fn mean_of_4([a, b, c, d]: [f32; 4]) -> f32 {
+    0.25 * ((a + b) + (c + d))
+}
+
+#[inline(always)]
+fn mean_of_8([a, b, c, d]: [f32; 4], [e, f, g, h]: [f32; 4]) -> f32 {
+    0.125 * (((a + b) + (c + d)) + ((e + f) + (g + h)))
 }
 
 /// The mean of four rows, as in [`mean`]: linear interpolation a quarter of a step along each axis from the first
 /// towards the others.
-///
-/// Partial sums of two and four terms are rounded to numbers between so many times the smallest and so many times the
-/// largest term, for these are exact.
 #[inline]
 pub(super) fn interpolate<const W: usize>(
     to: &mut Row<W>,
@@ -93,51 +104,61 @@ pub(super) fn interpolate<const W: usize>(
     [x, y, z]: [&Row<W>; 3],
     range: Range,
 ) {
-    write(to, |i| 0.25 * ((own[i] + x[i]) + (y[i] + z[i])));
+    write(to, |i| mean_of_4([own[i], x[i], y[i], z[i]]));
     range.mend(to, &[own, x, y, z]);
 }
 
-/// A quarter of a value and three quarters of the mean of its six neighbours, as in [`mean`]: eight terms in a tree,
-/// as in [`interpolate`]. Says whether `to` had other bits before.
+/// Two such means at once that differ along the first axis alone.
 #[inline]
-pub(super) fn smooth<const W: usize>(
-    to: &mut Row<W>,
+pub(super) fn interpolate_both<const W: usize>(
+    [low, high]: &mut [Row<W>; 2],
     own: &Row<W>,
-    neighbours: [&Row<W>; 6],
+    [x_low, x_high]: [&Row<W>; 2],
+    [y, z]: [&Row<W>; 2],
     range: Range,
-) -> bool {
-    let [a, b, c, d, e, f] = neighbours;
-    let value = |i: usize| 0.125 * (((a[i] + b[i]) + (own[i] + own[i])) + ((c[i] + d[i]) + (e[i] + f[i])));
-    if range == Range::Ordinary {
-        return exchange(to, value);
-    }
-    let mut row = *own;
-    write(&mut row, value);
-    range.mend(&mut row, &[own, own, a, b, c, d, e, f]);
-    replace(to, &row)
+) {
+    let mut block = |at: usize| {
+        for i in at..at + BLOCK {
+            low[i] = mean_of_4([own[i], x_low[i], y[i], z[i]]);
+        }
+        for i in at..at + BLOCK {
+            high[i] = mean_of_4([own[i], x_high[i], y[i], z[i]]);
+        }
+    };
+    (0..W / BLOCK).for_each(|n| block(n * BLOCK));
+    block(W - BLOCK);
+    range.mend(low, &[own, x_low, y, z]);
+    range.mend(high, &[own, x_high, y, z]);
 }
 
+/// A quarter of a value and three quarters of the mean of its six neighbours: the mean of eight rows, as in [`mean`].
+#[inline]
+pub(super) fn smooth<const W: usize>(to: &mut Row<W>, own: &Row<W>, neighbours: [&Row<W>; 6], range: Range) {
+    let [a, b, c, d, e, f] = neighbours;
+    write(to, |i| mean_of_8([a[i], b[i], own[i], own[i]], [c[i], d[i], e[i], f[i]]));
+    range.mend(to, &[own, own, a, b, c, d, e, f]);
+}
+
+/// Numbers that are computed at once.
+const BLOCK: usize = 4;
+
+/// Computes the numbers of a row block by block; the last one reaches back where the blocks do not come out even.
 #[inline(always)]
 fn write<const W: usize>(to: &mut Row<W>, value: impl Fn(usize) -> f32) {
-    for (i, to) in to.iter_mut().enumerate() {
-        *to = value(i);
+    const { assert!(W >= BLOCK, "at least one block") };
+    let block = |at: usize| -> [f32; BLOCK] { std::array::from_fn(|i| value(at + i)) };
+    for n in 0..W / BLOCK {
+        to[n * BLOCK..][..BLOCK].copy_from_slice(&block(n * BLOCK));
+    }
+    if !W.is_multiple_of(BLOCK) {
+        to[W - BLOCK..].copy_from_slice(&block(W - BLOCK));
     }
 }
 
 /// Stores a row and says whether it has other bits than the one before.
 #[inline]
 pub(super) fn replace<const W: usize>(to: &mut Row<W>, row: &Row<W>) -> bool {
-    exchange(to, |i| row[i])
-}
-
-/// Stores numbers and says whether any has other bits than the one before.
-#[inline(always)]
-fn exchange<const W: usize>(to: &mut Row<W>, value: impl Fn(usize) -> f32) -> bool {
-    let mut differing = 0;
-    for (i, to) in to.iter_mut().enumerate() {
-        let new = value(i);
-        differing |= to.to_bits() ^ new.to_bits();
-        *to = new;
-    }
+    let differing = to.iter().zip(row).fold(0, |bits, (a, b)| bits | (a.to_bits() ^ b.to_bits()));
+    *to = *row;
     differing != 0
 }

@@ -96,18 +96,16 @@ impl<const W: usize> TwoRuns<W> {
 
     fn update(&mut self, rows: &mut [Row<W>]) {
         let received =
-            self.reach.changed().fold(self.reach.range(), |range, vertex| range.with(&rows[vertex]));
+            self.reach.changed().iter().fold(self.reach.range(), |range, vertex| range.with(&rows[vertex]));
         self.reach.set_range(received);
         self.reach.update(rows);
         if let Some(rest) = &mut self.rest {
-            self.reach.changed().for_each(|vertex| rest.know(vertex));
-        } else if (0..rows.len()).any(|vertex| !self.reach.has_value(vertex)) {
+            rest.know_all(self.reach.changed());
+        } else if !self.reach.valued().is_full() {
             // A guess is not worth a second pass.
             let options = FillOptions { smoothing: Smoothing::Nowhere, ..self.options };
             let mut rest = PushPull::new(Pyramid::unobstructed(&self.lattice), options);
-            (0..rows.len())
-                .filter(|&vertex| self.reach.has_value(vertex))
-                .for_each(|vertex| rest.know(vertex));
+            rest.know_all(self.reach.valued());
             self.rest = Some(rest);
         }
         self.reach.settle();
