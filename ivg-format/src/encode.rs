@@ -13,9 +13,10 @@ use crate::order::explicit::write_list;
 use crate::validity;
 use crate::values::{Quantity, Values};
 use crate::wire::{FORMAT, HEADER_BYTES};
+use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
-use ivg_wire::{ContentId, Maximum, record_len, seal, write_chunk, write_end, write_record};
+use ivg_wire::{ContentId, Maximum, begin_record, record_len, seal, write_chunk};
 use lists::Lists;
 
 pub use record::encode_record;
@@ -238,19 +239,15 @@ pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8
     write_chunks(&mut chunks, source, (options.order == Order::Explicit).then_some(&directory))?;
     let header = layout(header, directory, lists.len(), chunks.len())?;
 
-    let mut out =
-        Vec::with_capacity(usize::try_from(header.file_bytes).map_err(|_| EncodeError::BundleSize)?);
-    out.extend_from_slice(&header.to_bytes());
-    out.extend_from_slice(&chunks);
-    let mut payload = Vec::new();
+    let mut out = vec![0; usize::try_from(header.file_bytes).map_err(|_| EncodeError::BundleSize)?];
+    out[..HEADER_BYTES].copy_from_slice(&header.to_bytes());
+    out[HEADER_BYTES..][..chunks.len()].copy_from_slice(&chunks);
     for id in header.records() {
-        if id == RecordId::End {
-            write_end(&mut out, header.file_bytes, ContentId::default());
-            continue;
-        }
-        payload.clear();
-        write_payload(&mut payload, source, &header, &lists, &prepared, id);
-        write_record(&mut out, id.stored(), 0, &payload, ContentId::default());
+        let range = header.record_range(id);
+        let record = &mut out[range.start as usize..range.end as usize];
+        let payload = begin_record(record, id.stored(), 0);
+        fill_payload(&mut payload[..header.payload_len(id) as usize], source, &header, &lists, &prepared, id);
+        seal(record, ContentId::default());
     }
     seal_all(&mut out, header);
     Ok(out)
@@ -262,26 +259,33 @@ fn write_validity(out: &mut Vec<u8>, source: &GridSource<'_>, header: &Header, j
     validity::write(out, range, source.validity, source.blocked_edges);
 }
 
-/// Appends the payload of a record that is not the end record.
-fn write_payload(
-    out: &mut Vec<u8>,
+/// Fills the payload of a record.
+fn fill_payload(
+    payload: &mut [u8],
     source: &GridSource<'_>,
     header: &Header,
     lists: &Lists,
     prepared: &Prepared<'_>,
     id: RecordId,
 ) {
+    let mut bytes = Vec::new();
     match id {
         RecordId::Bundle(k) => match header.bundle_vertices(k) {
-            Some(vertices) => prepared.write(out, vertices),
+            Some(vertices) => prepared.fill(payload, vertices),
             None => {
                 let list = lists.get(k).iter().copied();
-                write_list(out, list.clone());
-                prepared.write(out, list);
+                write_list(&mut bytes, list.clone());
+                let (index, values) = payload.split_at_mut(bytes.len());
+                index.copy_from_slice(&bytes);
+                prepared.fill(values, list);
             }
         },
-        RecordId::Validity(j) => write_validity(out, source, header, j),
-        RecordId::Corners | RecordId::End => prepared.write(out, header.lattice.corners()),
+        RecordId::Validity(j) => {
+            write_validity(&mut bytes, source, header, j);
+            payload.copy_from_slice(&bytes);
+        }
+        RecordId::Corners => prepared.fill(payload, header.lattice.corners()),
+        RecordId::End => payload.copy_from_slice(&header.file_bytes.to_le_bytes()),
     }
 }
 

@@ -57,7 +57,7 @@ pub use hash::splitmix64;
 pub use header::{COMMON_HEADER_BYTES, CommonHeader, FormatId, seal_header};
 pub use limits::{Limits, Maximum};
 pub use record::{
-    END_PAYLOAD, END_RECORD, RECORD_OVERHEAD, Record, read_end, read_record, record_len, seal, write_end,
-    write_record,
+    END_PAYLOAD, END_RECORD, RECORD_OVERHEAD, Record, begin_record, read_end, read_record, record_len, seal,
+    write_end, write_record,
 };
 pub use step::Step;

@@ -134,6 +134,15 @@ pub fn seal(envelope: &mut [u8], content: ContentId) {
     }
 }
 
+/// Begins a record in place: writes what is before the payload into `record`, which has the length [`record_len`] and is 0, and
+/// returns the rest, to which the payload goes. [`seal`] ends it.
+pub fn begin_record(record: &mut [u8], id: u32, generation: u32) -> &mut [u8] {
+    let Some((head, rest)) = record.split_first_chunk_mut::<HEADER_BYTES>() else { return &mut [] };
+    let ([i0, i1, i2, i3], [g0, g1, g2, g3]) = (id.to_le_bytes(), generation.to_le_bytes());
+    *head = [i0, i1, i2, i3, g0, g1, g2, g3];
+    rest
+}
+
 /// Appends a record to `out`.
 pub fn write_record(out: &mut Vec<u8>, id: u32, generation: u32, payload: &[u8], content: ContentId) {
     let start = out.len();

@@ -6,7 +6,7 @@ use crate::quant::{ratio, rgb9e5};
 use crate::values::RadianceHarmonics;
 
 /// Bytes of the mean radiance of the three channels.
-const MEAN_BYTES: usize = 4;
+pub(super) const MEAN_BYTES: usize = 4;
 
 /// Ratios of a vertex: eight for each of three channels.
 pub(super) const RATIOS: usize = 24;

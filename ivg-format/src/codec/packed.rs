@@ -10,7 +10,7 @@ use core::marker::PhantomData;
 pub(super) const DIRECTION_BYTES: usize = 3;
 
 /// Bytes of a colour.
-const COLOUR_BYTES: usize = 4;
+pub(super) const COLOUR_BYTES: usize = 4;
 
 /// Direction codes that are judged at once.
 const CHECKED: usize = 64;

@@ -1,20 +1,27 @@
 //! Writing: a grid's values on their way to bytes. What the encoding keeps of each vertex is found once for all; the largest
 //! number of all gives the scale exponent; then records are written from it in any order.
 
-use super::HEMISPHERES;
-use super::harmonics::RATIOS;
+mod hemispheres;
+
+use super::harmonics::{MEAN_BYTES, RATIOS};
 use crate::encoding::Encoding;
 use crate::header::SCALE_EXPONENTS;
 use crate::quant::direction::Octahedral24;
-use crate::quant::pack::{DirectionQuantiser, PackedVertex, pack_all};
 use crate::quant::pair::{HalfDirection, SingleDirection};
 use crate::quant::xyz::Xyz24;
-use crate::quant::{floor_log2, half, power_of_two_f64, ratio, rgb9e5};
+use crate::quant::{floor_log2, power_of_two_f64, ratio, rgb9e5};
 use crate::values::{HemisphereVectors, RadianceHarmonics, Values};
 use alloc::vec::Vec;
+use hemispheres::Hemispheres;
 
-/// Vertices that are packed at once.
-const VERTICES: usize = 16;
+/// Vertices that are gathered at once: they lie far from each other, and memory answers many requests in the time of one.
+const GATHERED: usize = 32;
+
+/// Vertices whose radiance is related to its mean at once.
+const RELATED: usize = 8;
+
+/// The mean radiance of a vertex, and codes of the ratios to it.
+type Related = ([u8; MEAN_BYTES], [u8; RATIOS]);
 
 /// Why values cannot be stored, and where: the vertex' linear index, the hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,22 +41,18 @@ pub(crate) enum Fault {
 
 /// The values of all vertices.
 pub(crate) enum Prepared<'a> {
-    /// Direction codes of three bytes, RGB9E5 colours.
-    Packed(Hemispheres<u32>),
-    /// binary16, each three numbers followed by a zero or not.
-    Half { hemispheres: Hemispheres<[u16; 3]>, padded: bool },
-    /// binary32.
-    Single(Hemispheres<[f32; 3]>),
+    /// `packed-oct24`.
+    Octahedral(Hemispheres<'a, Octahedral24>),
+    /// `packed-xyz24`.
+    Bytes(Hemispheres<'a, Xyz24>),
+    /// `pair-f16`, and `pair-f16x4` with each three numbers followed by a zero.
+    Half { hemispheres: Hemispheres<'a, HalfDirection>, padded: bool },
+    /// `pair-f32`.
+    Single(Hemispheres<'a, SingleDirection>),
     /// Numbers as they are.
     Vectors(&'a [HemisphereVectors]),
     /// Means, and codes of the ratios to them.
-    Harmonics { vertices: Vec<([u8; 4], [u8; RATIOS])>, scale_exponent: i16 },
-}
-
-/// Direction and colour of all hemispheres.
-pub(crate) struct Hemispheres<Code> {
-    vertices: Vec<PackedVertex<Code>>,
-    scale_exponent: i16,
+    Harmonics { vertices: Vec<Related>, scale_exponent: i16 },
 }
 
 impl<'a> Prepared<'a> {
@@ -57,17 +60,17 @@ impl<'a> Prepared<'a> {
     pub(crate) fn new(values: Values<'a>, encoding: Encoding, fixed: Option<i16>) -> Result<Self, Fault> {
         match (encoding, values) {
             (Encoding::PackedOct24, Values::Vectors(vectors)) => {
-                Ok(Self::Packed(pack::<Octahedral24>(vectors, rgb9e5::LARGEST, fixed)?))
+                Ok(Self::Octahedral(Hemispheres::new(vectors, fixed)?))
             }
             (Encoding::PackedXyz24, Values::Vectors(vectors)) => {
-                Ok(Self::Packed(pack::<Xyz24>(vectors, rgb9e5::LARGEST, fixed)?))
+                Ok(Self::Bytes(Hemispheres::new(vectors, fixed)?))
             }
             (Encoding::PairF16 | Encoding::PairF16x4, Values::Vectors(vectors)) => Ok(Self::Half {
-                hemispheres: pack::<HalfDirection>(vectors, half::LARGEST, fixed)?,
+                hemispheres: Hemispheres::new(vectors, fixed)?,
                 padded: encoding == Encoding::PairF16x4,
             }),
             (Encoding::PairF32, Values::Vectors(vectors)) => {
-                Ok(Self::Single(pack::<SingleDirection>(vectors, f32::MAX, fixed)?))
+                Ok(Self::Single(Hemispheres::new(vectors, fixed)?))
             }
             (Encoding::VectorsF32, Values::Vectors(vectors)) => {
                 match vectors.iter().enumerate().find_map(|(n, vertex)| Some((n, not_finite(vertex)?))) {
@@ -78,112 +81,46 @@ impl<'a> Prepared<'a> {
                     Some((vertex, hemisphere)) => Err(Fault::NotFinite(vertex, hemisphere)),
                 }
             }
-            (Encoding::Sh2, Values::Radiance(radiance)) => relate(radiance, fixed),
+            (Encoding::Sh2, Values::Radiance(radiance)) => {
+                let scale_exponent = scale_radiance(radiance, fixed)?;
+                Ok(Self::Harmonics { vertices: relate(radiance, scale_exponent), scale_exponent })
+            }
             _ => Err(Fault::Quantity),
         }
     }
 
     pub(crate) fn scale_exponent(&self) -> i16 {
         match self {
-            Self::Packed(hemispheres) => hemispheres.scale_exponent,
-            Self::Half { hemispheres, .. } => hemispheres.scale_exponent,
-            Self::Harmonics { scale_exponent, .. } => *scale_exponent,
-            Self::Single(hemispheres) => hemispheres.scale_exponent,
+            Self::Octahedral(hemispheres) => hemispheres.scale_exponent(),
+            Self::Bytes(hemispheres) => hemispheres.scale_exponent(),
+            Self::Half { hemispheres, .. } => hemispheres.scale_exponent(),
+            Self::Single(hemispheres) => hemispheres.scale_exponent(),
             Self::Vectors(_) => 0,
+            Self::Harmonics { scale_exponent, .. } => *scale_exponent,
         }
     }
 
-    /// Appends the payload of some vertices, given by their linear indices.
-    pub(crate) fn write(&self, out: &mut Vec<u8>, vertices: impl Iterator<Item = u64>) {
+    /// Fills a payload with the values of some vertices, given by their linear indices: as many as it has room for.
+    pub(crate) fn fill(&self, payload: &mut [u8], vertices: impl Iterator<Item = u64>) {
         let vertices: &[u64] = &vertices.collect::<Vec<_>>();
         match self {
-            Self::Packed(hemispheres) => {
-                hemispheres.write_colours(vertices, out, |colours| {
-                    rgb9e5::encode_all(colours).map(u32::to_le_bytes)
-                });
-                hemispheres.write_directions(vertices, out, |code| {
-                    let [low, middle, high, _] = code.to_le_bytes();
-                    [low, middle, high]
-                });
-            }
-            // To binary32 first: no hardware rounds binary64 to binary16.
-            Self::Half { hemispheres, padded: false } => {
-                let bytes = |[x, y, z]: [u16; 3]| little_endian::<2, 6>([x, y, z].map(u16::to_le_bytes));
-                hemispheres.write_colours(vertices, out, |colours| {
-                    by_hemisphere(colours, |c| half::from_f32(c as f32)).map(bytes)
-                });
-                hemispheres.write_directions(vertices, out, bytes);
-            }
-            Self::Half { hemispheres, padded: true } => {
-                let bytes = |[x, y, z]: [u16; 3]| little_endian::<2, 8>([x, y, z].map(u16::to_le_bytes));
-                hemispheres.write_colours(vertices, out, |colours| {
-                    by_hemisphere(colours, |c| half::from_f32(c as f32)).map(bytes)
-                });
-                hemispheres.write_directions(vertices, out, bytes);
-            }
-            Self::Single(hemispheres) => {
-                let bytes = |numbers: [f32; 3]| little_endian::<4, 12>(numbers.map(f32::to_le_bytes));
-                hemispheres
-                    .write_colours(vertices, out, |colours| by_hemisphere(colours, |c| c as f32).map(bytes));
-                hemispheres.write_directions(vertices, out, bytes);
-            }
+            Self::Octahedral(hemispheres) => hemispheres.fill_packed(payload, vertices),
+            Self::Bytes(hemispheres) => hemispheres.fill_packed(payload, vertices),
+            Self::Half { hemispheres, padded: false } => hemispheres.fill_half::<6>(payload, vertices),
+            Self::Half { hemispheres, padded: true } => hemispheres.fill_half::<8>(payload, vertices),
+            Self::Single(hemispheres) => hemispheres.fill_single(payload, vertices),
             Self::Vectors(vectors) => {
-                for &vertex in vertices {
-                    let components = vectors[vertex as usize].map(|v| v.map(|v| v.map(f32::to_le_bytes)));
-                    out.extend_from_slice(components.as_flattened().as_flattened().as_flattened());
+                let (payload, _) = payload.as_chunks_mut::<{ size_of::<HemisphereVectors>() }>();
+                for (bytes, &vertex) in payload.iter_mut().zip(vertices) {
+                    let components = vectors[vertex as usize].as_flattened().as_flattened();
+                    for (bytes, number) in bytes.as_chunks_mut().0.iter_mut().zip(components) {
+                        *bytes = number.to_le_bytes();
+                    }
                 }
             }
-            Self::Harmonics { vertices: all, .. } => {
-                vertices.iter().for_each(|&vertex| out.extend_from_slice(&all[vertex as usize].0));
-                vertices.iter().for_each(|&vertex| out.extend_from_slice(&all[vertex as usize].1));
-            }
+            Self::Harmonics { vertices: all, .. } => fill_radiance(all, payload, vertices),
         }
     }
-}
-
-impl<Code: Copy> Hemispheres<Code> {
-    /// Appends the colours of some vertices, divided by the scale, which is exact; `bytes` makes those of each hemisphere.
-    #[inline(always)]
-    fn write_colours<const BYTES: usize>(
-        &self,
-        vertices: &[u64],
-        out: &mut Vec<u8>,
-        bytes: impl Fn(&[[f64; HEMISPHERES]; 3]) -> [[u8; BYTES]; HEMISPHERES],
-    ) {
-        let scale = power_of_two_f64(-i32::from(self.scale_exponent));
-        out.reserve(vertices.len() * HEMISPHERES * BYTES);
-        for &vertex in vertices {
-            let colours =
-                self.vertices[vertex as usize].colours.map(|component| component.map(|c| c * scale));
-            out.extend_from_slice(bytes(&colours).as_flattened());
-        }
-    }
-
-    /// Appends the directions of some vertices.
-    #[inline(always)]
-    fn write_directions<const BYTES: usize>(
-        &self,
-        vertices: &[u64],
-        out: &mut Vec<u8>,
-        bytes: impl Fn(Code) -> [u8; BYTES] + Copy,
-    ) {
-        out.reserve(vertices.len() * HEMISPHERES * BYTES);
-        for &vertex in vertices {
-            out.extend_from_slice(self.vertices[vertex as usize].directions.map(bytes).as_flattened());
-        }
-    }
-}
-
-/// The colour of each hemisphere, its components as `number` makes them.
-fn by_hemisphere<T>(colours: &[[f64; HEMISPHERES]; 3], number: impl Fn(f64) -> T) -> [[T; 3]; HEMISPHERES] {
-    core::array::from_fn(|h| colours.each_ref().map(|component| number(component[h])))
-}
-
-/// The bytes of three numbers, and zeros behind them.
-fn little_endian<const NUMBER: usize, const ALL: usize>(numbers: [[u8; NUMBER]; 3]) -> [u8; ALL] {
-    let mut bytes = [0; ALL];
-    bytes.iter_mut().zip(numbers.as_flattened()).for_each(|(to, from)| *to = *from);
-    bytes
 }
 
 /// The first hemisphere of a vertex with a number that is not finite.
@@ -193,78 +130,8 @@ fn not_finite(vertex: &HemisphereVectors) -> Option<usize> {
     if finite { None } else { vertex.iter().position(|v| !v.as_flattened().iter().all(|c| c.is_finite())) }
 }
 
-/// Directions and colours of all vertices; `storable` is the largest number that stores a colour.
-fn pack<Q: DirectionQuantiser>(
-    vectors: &[HemisphereVectors],
-    storable: f32,
-    fixed: Option<i16>,
-) -> Result<Hemispheres<Q::Code>, Fault> {
-    // Colours of binary32 are not scaled (IVG-HDR-04).
-    let highest = if storable == f32::MAX { 0 } else { *SCALE_EXPONENTS.end() };
-    let limit = f64::from(storable) * power_of_two_f64(i32::from(highest));
-    let mut packed = Vec::with_capacity(vectors.len());
-    let mut largest = 0.0f64;
-    let (chunks, rest) = vectors.as_chunks::<VERTICES>();
-    let (ones, _) = rest.as_chunks::<1>();
-    for chunk in chunks {
-        largest = append::<Q, VERTICES>(&mut packed, chunk, largest, limit)?;
-    }
-    for one in ones {
-        largest = append::<Q, 1>(&mut packed, one, largest, limit)?;
-    }
-    Ok(Hemispheres { vertices: packed, scale_exponent: settle(largest, storable, fixed)? })
-}
-
-/// Packs every hemisphere of some vertices, which must be finite and their colours no more than the limit; the largest
-/// component of a colour so far.
-fn append<Q: DirectionQuantiser, const N: usize>(
-    packed: &mut Vec<PackedVertex<Q::Code>>,
-    vectors: &[HemisphereVectors; N],
-    largest: f64,
-    limit: f64,
-) -> Result<f64, Fault> {
-    let mut vertices = [PackedVertex::default(); N];
-    for hemisphere in 0..HEMISPHERES {
-        pack_all::<Q, N>(vectors, hemisphere, &mut vertices);
-    }
-    let components = vectors.as_flattened().as_flattened().as_flattened();
-    let finite = components.iter().fold(true, |all, c| all & c.is_finite());
-    let mut most = [largest; HEMISPHERES];
-    for colours in vertices.iter().flat_map(|vertex| &vertex.colours) {
-        for (most, &c) in most.iter_mut().zip(colours) {
-            *most = if c > *most { c } else { *most };
-        }
-    }
-    let most = most.iter().fold(largest, |most, &c| most.max(c));
-    if !finite || most > limit {
-        return Err(fault(packed.len(), vectors, &vertices, limit));
-    }
-    packed.extend_from_slice(&vertices);
-    Ok(most)
-}
-
-/// What is wrong with the first vertex and hemisphere of which something is.
-fn fault<Code>(
-    first: usize,
-    vectors: &[HemisphereVectors],
-    packed: &[PackedVertex<Code>],
-    limit: f64,
-) -> Fault {
-    for (vertex, (vectors, packed)) in (first..).zip(vectors.iter().zip(packed)) {
-        for (hemisphere, vectors) in vectors.iter().enumerate() {
-            if !vectors.as_flattened().iter().all(|c| c.is_finite()) {
-                return Fault::NotFinite(vertex, hemisphere);
-            }
-            if packed.colours.iter().any(|component| component[hemisphere] > limit) {
-                return Fault::TooLarge(vertex, hemisphere);
-            }
-        }
-    }
-    unreachable!("some hemisphere was at fault")
-}
-
-/// Means and codes of the ratios to them (IVG-SH-06).
-fn relate<'a>(radiance: &[RadianceHarmonics], fixed: Option<i16>) -> Result<Prepared<'a>, Fault> {
+/// The scale exponent of the radiance of a grid, which must be finite and no more than can be stored.
+fn scale_radiance(radiance: &[RadianceHarmonics], fixed: Option<i16>) -> Result<i16, Fault> {
     let limit = f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(*SCALE_EXPONENTS.end()));
     let mut largest = 0.0f64;
     for (vertex, channels) in radiance.iter().enumerate() {
@@ -276,20 +143,48 @@ fn relate<'a>(radiance: &[RadianceHarmonics], fixed: Option<i16>) -> Result<Prep
             return Err(Fault::RadianceTooLarge(vertex));
         }
     }
-    // The ratios are taken to the means as they will be decoded, so that their rounding is not passed on.
-    let scale_exponent = settle(largest, rgb9e5::LARGEST, fixed)?;
+    settle(largest, rgb9e5::LARGEST, fixed)
+}
+
+/// Means, and codes of the ratios to them (IVG-SH-06).
+fn relate(radiance: &[RadianceHarmonics], scale_exponent: i16) -> Vec<Related> {
+    let mut vertices = Vec::with_capacity(radiance.len());
+    let (chunks, rest) = radiance.as_chunks::<RELATED>();
+    let (ones, _) = rest.as_chunks::<1>();
+    chunks.iter().for_each(|chunk| vertices.extend_from_slice(&relate_all(chunk, scale_exponent)));
+    ones.iter().for_each(|one| vertices.extend_from_slice(&relate_all(one, scale_exponent)));
+    vertices
+}
+
+#[inline(always)]
+fn relate_all<const N: usize>(radiance: &[RadianceHarmonics; N], scale_exponent: i16) -> [Related; N] {
     let scale = power_of_two_f64(-i32::from(scale_exponent));
-    let vertices = radiance.iter().map(|channels| {
-        let mean = rgb9e5::encode_f64(channels.map(|coefficients| f64::from(coefficients[0]) * scale));
-        let decoded = rgb9e5::decode_scaled(mean, scale_exponent);
-        let mut codes = [0; RATIOS];
-        let (of_channel, _) = codes.as_chunks_mut();
-        for ((codes, [_, others @ ..]), mean) in of_channel.iter_mut().zip(channels).zip(decoded) {
-            *codes = ratio::encode_all(others, mean);
+    let mut means = [[0.0; N]; 3];
+    for (channel, means) in means.iter_mut().enumerate() {
+        for (to, channels) in means.iter_mut().zip(radiance) {
+            let [mean, ..] = channels[channel];
+            *to = f64::from(if mean > 0.0 { mean } else { 0.0 }) * scale;
         }
-        (mean.to_le_bytes(), codes)
-    });
-    Ok(Prepared::Harmonics { vertices: vertices.collect(), scale_exponent })
+    }
+    let means = rgb9e5::encode_all(&means);
+    let mut related = [Related::default(); N];
+    for (n, (mean, ratios)) in related.iter_mut().enumerate() {
+        *mean = means[n].to_le_bytes();
+        // The ratios are taken to the means as they will be decoded, so that their rounding is not passed on.
+        *ratios = ratio::encode_all(&radiance[n], rgb9e5::decode_scaled(means[n], scale_exponent));
+    }
+    related
+}
+
+/// Fills a payload with means, then with the codes of ratios.
+fn fill_radiance(all: &[Related], payload: &mut [u8], vertices: &[u64]) {
+    let count = payload.len() / (MEAN_BYTES + RATIOS);
+    let (means, ratios) = payload.split_at_mut(count * MEAN_BYTES);
+    let (means, _) = means.as_chunks_mut();
+    let (ratios, _) = ratios.as_chunks_mut();
+    for ((mean, ratios), &vertex) in means.iter_mut().zip(ratios).zip(vertices) {
+        (*mean, *ratios) = all[vertex as usize];
+    }
 }
 
 /// The scale exponent of a file that has one already, if it holds `largest`; otherwise the one that a writer should choose.

@@ -55,7 +55,9 @@ pub fn encode_record(
         let values = Gathered::of(source.values, &vertices);
         let prepared = Prepared::new(values.borrowed(), header.encoding, Some(header.scale_exponent))
             .map_err(|fault| named(fault, source, header.encoding, |index| vertices[index]))?;
-        prepared.write(&mut payload, 0..vertices.len() as u64);
+        let index_bytes = payload.len();
+        payload.resize(index_bytes + vertices.len() * header.encoding.bytes_per_vertex() as usize, 0);
+        prepared.fill(&mut payload[index_bytes..], 0..vertices.len() as u64);
     }
     if payload.len() as u64 != header.payload_len(id) {
         return Err(EncodeError::OtherFile { what: "bundles" });

@@ -49,13 +49,13 @@ pub trait DirectionQuantiser {
     }
 }
 
-/// The hemispheres of a vertex, each as a direction and a colour.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PackedVertex<Code> {
-    /// Directions, by hemisphere.
-    pub(crate) directions: [Code; 6],
-    /// Components of colours, `[rgb][hemisphere]`, not negative.
-    pub(crate) colours: [[f64; 6]; 3],
+/// One hemisphere of `N` vertices, each as a direction and a colour.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PackedAll<Code, const N: usize> {
+    /// Directions.
+    pub(crate) directions: [Code; N],
+    /// Components of colours, `[rgb][n]`, not negative.
+    pub(crate) colours: [[f64; N]; 3],
 }
 
 /// A hemisphere's direction code and colour.
@@ -84,20 +84,16 @@ pub fn pack_hemisphere<Q: DirectionQuantiser>(
     assert!(hemisphere < 6, "there are six hemispheres, not {}", hemisphere + 1);
     let mut vertex = HemisphereVectors::default();
     vertex[hemisphere] = *vectors;
-    let mut packed = [PackedVertex::default()];
-    pack_all::<Q, 1>(&[vertex], hemisphere, &mut packed);
-    let [PackedVertex { directions, colours }] = packed;
-    let colour = colours.map(|component| component[hemisphere]);
+    let PackedAll { directions: [direction], colours } = pack_all::<Q, 1>(&[vertex], hemisphere);
     let finite = vectors.as_flattened().iter().all(|c| c.is_finite());
-    finite.then_some(PackedHemisphere { direction: directions[hemisphere], colour })
+    finite.then_some(PackedHemisphere { direction, colour: colours.map(|[component]| component) })
 }
 
 /// Packs one hemisphere of `N` vertices, all of whose components are finite; what becomes of others is of no use.
 pub(crate) fn pack_all<Q: DirectionQuantiser, const N: usize>(
     vertices: &[HemisphereVectors; N],
     hemisphere: usize,
-    packed: &mut [PackedVertex<Q::Code>; N],
-) {
+) -> PackedAll<Q::Code, N> {
     let (axis, positive) = (hemisphere / 2, hemisphere.is_multiple_of(2));
     let mut sums = [[0.0; N]; 3];
     let mut components = [[0.0; N]; 3];
@@ -140,12 +136,7 @@ pub(crate) fn pack_all<Q: DirectionQuantiser, const N: usize>(
             }
         }
     }
-    for (n, packed) in packed.iter_mut().enumerate() {
-        packed.directions[hemisphere] = codes[n];
-        for (component, colours) in packed.colours.iter_mut().zip(&colours) {
-            component[hemisphere] = colours[n];
-        }
-    }
+    PackedAll { directions: codes, colours }
 }
 
 /// Whether a colour may exceed its cap, by squares; with room for their rounding.

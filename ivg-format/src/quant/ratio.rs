@@ -37,10 +37,10 @@ pub fn encode(ratio: f64, which: usize) -> i8 {
     nearest(ratio, f64::from(step(which, ratio < 0.0)))
 }
 
-/// The codes of coefficients 1 to 8 of a channel, finite numbers, for the coefficient 0 that a reader will have: 0 where
+/// The codes of coefficients 1 to 8 of each channel, finite numbers, for the coefficients 0 that a reader will have: 0 where
 /// that is 0 (IVG-SH-06).
 #[inline(always)]
-pub(crate) fn encode_all(coefficients: &[f32; 8], mean: f32) -> [u8; 8] {
+pub(crate) fn encode_all(channels: &[[f32; 9]; 3], means: [f32; 3]) -> [u8; 24] {
     /// Sums with 1.5 × 2^23 have no digits behind the point; the lowest bits are the whole number.
     const WHOLE: f32 = 12_582_912.0;
     /// In binary32 a quotient of up to 127 is off by less than 127 × 2^-21: nearer to the middle between two whole
@@ -48,20 +48,32 @@ pub(crate) fn encode_all(coefficients: &[f32; 8], mean: f32) -> [u8; 8] {
     const DOUBT: f32 = 0.5 - 1.0 / 8192.0;
     let above = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| 1.0 / step(which, false));
     let below = [1, 2, 3, 4, 5, 6, 7, 8].map(|which| 1.0 / step(which, true));
-    let inverse = 1.0 / mean;
-    let mut codes = [0; 8];
-    let mut certain = inverse.is_finite();
-    for n in 0..8 {
-        let negative = coefficients[n] < 0.0;
-        let quotient = coefficients[n] * inverse * if negative { below[n] } else { above[n] };
-        let quotient = if quotient < 127.0 { quotient } else { 127.0 };
-        let quotient = if quotient > -127.0 { quotient } else { -127.0 };
-        let whole = quotient + WHOLE;
-        codes[n] = whole.to_bits() as u8;
-        // Not a number is not certain, either: that is what a mean of 0 gives, and one too small for its inverse.
-        certain &= (quotient - (whole - WHOLE)).abs() < DOUBT;
+    let mut sums = [[0; 8]; 3];
+    let mut certain = [0; 3];
+    for (channel, [_, coefficients @ ..]) in channels.iter().enumerate() {
+        let inverse = 1.0 / means[channel];
+        let mut all = i32::from(inverse.is_finite());
+        for n in 0..8 {
+            let negative = coefficients[n] < 0.0;
+            let quotient = coefficients[n] * inverse * if negative { below[n] } else { above[n] };
+            let quotient = if quotient < 127.0 { quotient } else { 127.0 };
+            let quotient = if quotient > -127.0 { quotient } else { -127.0 };
+            let whole = quotient + WHOLE;
+            sums[channel][n] = whole.to_bits();
+            // Not a number is not certain, either: that is what a mean of 0 gives, and one too small for its inverse.
+            all &= i32::from((quotient - (whole - WHOLE)).abs() < DOUBT);
+        }
+        certain[channel] = all;
     }
-    if certain { codes } else { encode_exactly(coefficients, mean) }
+    let mut codes = [0; 24];
+    for (code, sum) in codes.iter_mut().zip(sums.as_flattened()) {
+        *code = *sum as u8;
+    }
+    for (channel, codes) in codes.as_chunks_mut().0.iter_mut().enumerate().filter(|&(n, _)| certain[n] == 0) {
+        let [_, coefficients @ ..] = &channels[channel];
+        *codes = encode_exactly(coefficients, means[channel]);
+    }
+    codes
 }
 
 #[cold]

@@ -39,13 +39,6 @@ pub(crate) fn encode_f64(colour: [f64; 3]) -> u32 {
 /// As [`encode_f64`], for finite colours that are not negative, one array for each component.
 #[inline(always)]
 pub(crate) fn encode_all<const N: usize>(colours: &[[f64; N]; 3]) -> [u32; N] {
-    /// Sums with 2^52 have no digits behind the point; the lowest bits are the whole number.
-    const WHOLE: f64 = 4_503_599_627_370_496.0;
-    let mantissa = |scaled: f64| {
-        let even = scaled + WHOLE;
-        // Halves went to the even neighbour; where that was the lower one, up.
-        even.to_bits() as u32 + u32::from(scaled - (even - WHOLE) >= 0.5)
-    };
     let lesser = |one: f64, other: f64| if one < other { one } else { other };
     core::array::from_fn(|n| {
         let [r, g, b] = colours.each_ref().map(|c| lesser(c[n], f64::from(LARGEST)));
@@ -54,10 +47,60 @@ pub(crate) fn encode_all<const N: usize>(colours: &[[f64; N]; 3]) -> [u32; N] {
         // The exponent in the upper half of the bits; numbers below 2^-16 share the lowest.
         let exponent = (((largest.to_bits() >> 52) as i32) - 1023 + 16).max(0);
         let scale = |exponent: i32| f64::from_bits(((EXPONENT_OFFSET - exponent + 1023) as u64) << 52);
-        let exponent = exponent + i32::from(mantissa(largest * scale(exponent)) == 512);
+        let exponent = exponent + i32::from(nearest(largest * scale(exponent)) == 512);
         let scale = scale(exponent);
-        (exponent as u32) << 27 | mantissa(b * scale) << 18 | mantissa(g * scale) << 9 | mantissa(r * scale)
+        (exponent as u32) << 27 | nearest(b * scale) << 18 | nearest(g * scale) << 9 | nearest(r * scale)
     })
+}
+
+/// The whole number nearest to one that is not negative, halves up.
+#[inline(always)]
+fn nearest(number: f64) -> u32 {
+    /// Sums with 2^52 have no digits behind the point; the lowest bits are the whole number.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    let even = number + WHOLE;
+    // Halves went to the even neighbour; where that was the lower one, up.
+    even.to_bits() as u32 + u32::from(number - (even - WHOLE) >= 0.5)
+}
+
+/// A colour before it is divided by a scale that is not known yet, which changes only the exponent.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Unscaled {
+    /// As they are stored.
+    pub(crate) mantissas: u32,
+    /// The exponent of the largest component in binary32, after rounding; 0 for one that binary32 does not have.
+    pub(crate) exponent: u8,
+}
+
+impl Unscaled {
+    /// A finite colour that is not negative.
+    #[inline(always)]
+    pub(crate) fn new(colour: [f64; 3]) -> Self {
+        /// Below it and above the range of binary32, colours are not kept.
+        const LEAST: i32 = -127;
+        let [r, g, b] = colour;
+        let largest = if r > g { r } else { g };
+        let largest = if b > largest { b } else { largest };
+        let mantissa = |component: f64, exponent: i32| nearest(component * power_of_two_f64(8 - exponent));
+        let exponent = floor_log2(largest).max(LEAST);
+        let exponent = exponent + i32::from(mantissa(largest, exponent) == 512);
+        let mantissas = mantissa(b, exponent) << 18 | mantissa(g, exponent) << 9 | mantissa(r, exponent);
+        // Black is black at any exponent.
+        let exponent = if largest > 0.0 { exponent - LEAST } else { 1 };
+        Self { mantissas, exponent: u8::try_from(exponent).unwrap_or(0) }
+    }
+
+    /// The code of the colour over 2^`scale_exponent`, which is at most [`LARGEST`]; `None` where that is so small that
+    /// its mantissas have fewer bits, and for what was not kept.
+    #[inline(always)]
+    pub(crate) fn scaled(self, scale_exponent: i16) -> Option<u32> {
+        let exponent = i32::from(self.exponent) - 127 - i32::from(scale_exponent) + 16;
+        if self.exponent > 0 && (exponent >= 0 || self.mantissas == 0) {
+            Some(if self.mantissas == 0 { 0 } else { (exponent as u32) << 27 | self.mantissas })
+        } else {
+            None
+        }
+    }
 }
 
 /// The mantissa of `component` at `exponent`, halves rounded up. The component is not negative and the

@@ -23,6 +23,18 @@ fn what_is_written_is_read() {
 }
 
 #[test]
+fn a_record_made_in_place_is_the_one_appended() {
+    for length in 0..20u8 {
+        let payload: Vec<u8> = (0..length).map(|b| b | 0x80).collect();
+        let expected = written(&payload);
+        let mut record = alloc::vec![0; expected.len()];
+        begin_record(&mut record, 5, 2)[..payload.len()].copy_from_slice(&payload);
+        seal(&mut record, CONTENT);
+        assert_eq!(record, expected);
+    }
+}
+
+#[test]
 fn every_truncation_names_the_missing_bytes() {
     let bytes = written(b"seven b");
     for n in 0..bytes.len() {

@@ -129,3 +129,33 @@ quickcheck! {
         decode(encode(colour)) == colour
     }
 }
+
+#[test]
+fn a_colour_that_is_scaled_later_is_the_same() {
+    let mut state = 7u64;
+    let mut next = || {
+        state = ivg_wire::splitmix64(state, 0);
+        state
+    };
+    let mut not_kept = 0;
+    for round in 0..100_000u32 {
+        // Up to 2^-24 apart, some on or next to the middle of two mantissas; the largest from 2^-140 to 2^128.
+        let size = power_of_two_f64((next() % 268) as i32 - 140);
+        let colour = [0, 1, 2].map(|_| match round % 4 {
+            0 => 0.0,
+            1 => (next() % 1024) as f64 / 1024.0 * size,
+            2 => ((next() % 1024) as f64 / 1024.0).next_down() * size,
+            _ => (next() as u32 as f64) * power_of_two_f64(-32 - (next() % 24) as i32) * size,
+        });
+        let largest = colour[0].max(colour[1]).max(colour[2]);
+        // Scales that leave the largest no more than the largest number, and from there down to where nothing is left.
+        let lowest = (floor_log2(largest.max(1e-60)) - 14).max(-125);
+        let scale_exponent = (lowest + (next() % 60) as i32).min(112);
+        let scaled = colour.map(|c| c * power_of_two_f64(-scale_exponent));
+        let found = Unscaled::new(colour).scaled(scale_exponent as i16);
+        not_kept += u32::from(found.is_none());
+        let [expected] = encode_all(&scaled.map(|c| [c]));
+        assert_eq!(found.unwrap_or(expected), expected, "{colour:?} at {scale_exponent}");
+    }
+    assert!((10_000..80_000).contains(&not_kept), "{not_kept}");
+}
