@@ -231,7 +231,7 @@ impl Level {
 
     /// The neighbour of a node in each direction: the linked one, the node itself where there is none. Nothing if
     /// there are several in any direction.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn neighbours(&self, node: usize) -> Option<[usize; DIRECTIONS]> {
         match &self.links {
             Links::Open(bits) => {

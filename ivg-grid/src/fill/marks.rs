@@ -24,14 +24,23 @@ impl Marks {
 
     /// Whether every node is marked.
     pub(super) fn is_full(&self) -> bool {
-        let mut all = Self::new(self.len);
-        all.fill();
-        self.words == all.words
+        self.count() == self.len
     }
 
     /// Whether no node is marked.
     pub(super) fn is_empty(&self) -> bool {
         self.words.iter().all(|&word| word == 0)
+    }
+
+    /// Number of marked nodes.
+    pub(super) fn count(&self) -> usize {
+        self.words.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
+    /// Marks those nodes that are not marked, and no others.
+    pub(super) fn complement(&mut self) {
+        self.words.iter_mut().for_each(|word| *word = !*word);
+        self.cut();
     }
 
     pub(super) fn clear(&mut self) {

@@ -29,6 +29,8 @@ pub(super) struct PushPull<const W: usize> {
     range: Range,
     /// Vertices that are not known and whose rows are not those computed last.
     overwritten: Vec<usize>,
+    /// How many vertices were missing when this was last narrowed to what they depend on.
+    missing: usize,
 }
 
 /// The values of one level.
@@ -38,8 +40,10 @@ struct LevelValues<const W: usize> {
     known: Marks,
     /// Nodes that have a value: the known ones and those that were pushed.
     valued: Marks,
-    /// Nodes with a parent. No other node is pushed.
+    /// Nodes that may be pushed: they have a parent, and a vertex that was missing when last narrowed depends on them.
     inner: Marks,
+    /// Nodes that may be pulled: such a vertex depends on their value where they are known.
+    wanted: Marks,
     /// Nodes whose number is one less than that of their sibling along x.
     pairs: Marks,
     /// Values, smoothed where they were pushed. Empty at level 0.
@@ -76,9 +80,9 @@ impl<const W: usize> PushPull<W> {
                 (true, 0) => len.min(64 * 2 * lag(level)),
                 (true, _) => len,
             };
-            let (mut inner, mut pairs) = (Marks::new(len), Marks::new(len));
+            let (mut wanted, mut pairs) = (Marks::new(len), Marks::new(len));
+            wanted.fill();
             for node in (0..len).filter(|&node| level.parents[node] != NONE) {
-                inner.insert(node);
                 let next = node + 1;
                 if next < len
                     && level.parents[next] == level.parents[node]
@@ -91,7 +95,8 @@ impl<const W: usize> PushPull<W> {
             LevelValues {
                 known: Marks::new(len),
                 valued: Marks::new(len),
-                inner,
+                inner: with_parents(level),
+                wanted,
                 pairs,
                 known_around: vec![0; len],
                 near: Marks::new(len),
@@ -103,7 +108,15 @@ impl<const W: usize> PushPull<W> {
             }
         });
         let levels = levels.collect();
-        Self { pyramid, options, levels, everything: true, range: Range::Ordinary, overwritten: Vec::new() }
+        Self {
+            pyramid,
+            options,
+            levels,
+            everything: true,
+            range: Range::Ordinary,
+            overwritten: Vec::new(),
+            missing: usize::MAX,
+        }
     }
 
     /// The row of a vertex is known from now on, or has been replaced.
@@ -137,6 +150,59 @@ impl<const W: usize> PushPull<W> {
                 marks.into_iter().for_each(Marks::clear);
             }
             level.valued.clone_from(&level.known);
+        }
+    }
+
+    /// From now on leaves out all nodes on which no vertex depends that is missing now, if less than half as many are
+    /// missing as when last narrowed. Vertices that are known never become missing.
+    ///
+    /// A node that is pushed depends on its known neighbours, its parent and the parent's neighbours; a known one on
+    /// its children.
+    pub(super) fn narrow(&mut self) {
+        let mut missing = self.levels[0].known.clone();
+        missing.complement();
+        if 2 * missing.count() >= self.missing {
+            return;
+        }
+        self.missing = missing.count();
+        self.forget();
+        let levels = &self.pyramid.levels;
+        let empty: Vec<Marks> = levels.iter().map(|level| Marks::new(level.len())).collect();
+        let (mut pushed, mut wanted) = (empty.clone(), empty);
+        // Nodes all of whose vertices are missing: only these can be without a known child, now or later.
+        let mut unknown = missing;
+        pushed[0].clone_from(&unknown);
+        for (index, pair) in levels.windows(2).enumerate() {
+            let [level, parents] = pair else { unreachable!("two levels") };
+            pushed[index].map_words(|group, word| word & unknown.word(group));
+            for node in pushed[index].iter() {
+                level.for_each_link(node, |other| wanted[index].insert(other));
+            }
+            let (below, above) = pushed.split_at_mut(index + 1);
+            for node in below[index].iter().filter(|&node| level.parents[node] != NONE) {
+                let parent = level.parents[node] as usize;
+                above[0].insert(parent);
+                parents.for_each_link(parent, |other| above[0].insert(other));
+            }
+            wanted[index + 1].clone_from(&above[0]);
+            unknown.complement();
+            let known_parents =
+                unknown.iter().map(|node| level.parents[node]).filter(|&parent| parent != NONE);
+            let mut next = Marks::new(parents.len());
+            known_parents.for_each(|parent| next.insert(parent as usize));
+            next.complement();
+            unknown = next;
+        }
+        for index in (1..levels.len()).rev() {
+            let (below, above) = wanted.split_at_mut(index);
+            let children = above[0].iter().flat_map(|node| levels[index].children(node));
+            children.for_each(|&child| below[index - 1].insert(child as usize));
+        }
+        let sets = pushed.into_iter().zip(wanted).zip(levels);
+        for (values, ((mut pushed, wanted), level)) in self.levels.iter_mut().zip(sets) {
+            let inner = with_parents(level);
+            pushed.map_words(|group, word| word & inner.word(group));
+            (values.inner, values.wanted) = (pushed, wanted);
         }
     }
 
@@ -193,9 +259,20 @@ impl<const W: usize> PushPull<W> {
         let touched = sources.iter().map(|node| parents[node]).filter(|&parent| parent != NONE);
         touched.for_each(|parent| coarser.changed.insert(parent as usize));
         let mut changed = std::mem::take(&mut coarser.changed);
+        changed.map_words(|group, word| word & coarser.wanted.word(group));
         let mut mean = [0.0; W];
         changed.retain(|node| {
             let children = level.children(node).iter().map(|&child| child as usize);
+            if self.everything {
+                coarser.become_known(level, node);
+                return mean_of_known(
+                    &mut coarser.rows[node],
+                    children,
+                    &finer.known,
+                    finer_rows,
+                    self.range,
+                );
+            }
             if !mean_of_known(&mut mean, children, &finer.known, finer_rows, self.range) {
                 return false;
             }
@@ -231,21 +308,36 @@ impl<const W: usize> PushPull<W> {
                 }
             }
         }
-        for (parent, octants) in octants.iter_mut().enumerate() {
-            let octants = std::mem::take(octants);
-            if octants != 0 {
-                let children = parents.children(parent).iter().map(|&child| child as usize);
-                children
-                    .filter(|&child| octants >> level.octant(child) & 1 == 1)
-                    .filter(|&child| !self.options.neighbours || !finer.near.contains(child))
-                    .for_each(|child| stale.insert(child));
+        // Who does not take the mean of known neighbours. Either these are few, or the parents that count.
+        let interpolated = |group: usize| {
+            let near = if self.options.neighbours { finer.near.word(group) } else { 0 };
+            finer.inner.word(group) & !finer.known.word(group) & !near
+        };
+        let count: usize = (0..stale.groups()).map(|group| interpolated(group).count_ones() as usize).sum();
+        let touched = octants.iter().filter(|&&octants| octants != 0).count();
+        if count < 8 * touched {
+            stale.map_words(|group, _| {
+                nodes(group, interpolated(group)).fold(0, |word, node| {
+                    let counts = octants[level.parents[node] as usize] >> level.octant(node) & 1;
+                    word | u64::from(counts) << (node % 64)
+                })
+            });
+            octants.fill(0);
+        } else {
+            for (parent, octants) in octants.iter_mut().enumerate() {
+                let octants = std::mem::take(octants);
+                if octants != 0 {
+                    let children = parents.children(parent).iter().map(|&child| child as usize);
+                    children
+                        .filter(|&child| octants >> level.octant(child) & 1 == 1)
+                        .filter(|&child| interpolated(child / 64) >> (child % 64) & 1 == 1)
+                        .for_each(|child| stale.insert(child));
+                }
             }
         }
         if self.options.neighbours {
-            for node in finer.changed.iter() {
-                let links = (0..DIRECTIONS).flat_map(|direction| level.links(node, direction));
-                links.for_each(|other| stale.insert(other as usize));
-            }
+            // Known ones among them are not pushed.
+            stale.join(&around(level, index == 1, finer.changed.clone()));
         }
         if index == 1 {
             self.overwritten.iter().for_each(|&vertex| stale.insert(vertex));
@@ -579,6 +671,13 @@ fn around(level: &Level, finest: bool, marks: Marks) -> Marks {
         links.for_each(|other| all.insert(other as usize));
     }
     all
+}
+
+/// The nodes of a level that have a parent.
+fn with_parents(level: &Level) -> Marks {
+    let mut marks = Marks::new(level.len());
+    (0..level.len()).filter(|&node| level.parents[node] != NONE).for_each(|node| marks.insert(node));
+    marks
 }
 
 /// After how many groups of 64 nodes all neighbours of level 0 have been visited.

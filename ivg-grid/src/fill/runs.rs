@@ -111,6 +111,7 @@ impl<const W: usize> TwoRuns<W> {
         self.reach.settle();
         if let Some(rest) = &mut self.rest {
             rest.set_range(received);
+            rest.narrow();
             rest.update(rows);
             rest.settle();
             if !rest.knows_any() {
