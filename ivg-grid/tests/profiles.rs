@@ -144,8 +144,43 @@ fn harmonics_are_evaluated_as_the_specification_says() {
 
 #[test]
 fn what_the_tangential_components_lose_is_the_printed_half() {
-    assert!(specification().contains("Σ_{j≠i} n_j (1 − ½ |n_j|) I_i[j]"), "IVG-IRR-03 prints another formula");
+    assert!(
+        specification().contains("Σ_{j≠i} n_j (1 − ½ |n_j|) I_i[j]"),
+        "IVG-IRR-03 prints another formula"
+    );
     assert_eq!(TANGENTIAL_LOSS, 0.5);
+}
+
+#[test]
+fn formulas_have_the_printed_values() {
+    let one_channel: [[f32; 3]; 6] = [
+        [3.0, 1.0, -0.5],
+        [-1.0, 0.5, 0.25],
+        [0.5, 2.0, 0.0],
+        [1.5, -0.5, -0.25],
+        [1.0, 1.0, 1.5],
+        [1.0, 0.5, -1.75],
+    ];
+    let vectors: HemisphereVectors = one_channel.map(|vector| [vector; 3]);
+    let radiance: RadianceHarmonics = [[1.0, 0.5, -0.25, 0.75, 0.1, -0.2, 0.3, 0.15, -0.05]; 3];
+    let normals = [
+        ("(0, 1, 0)", [0.0, 1.0, 0.0]),
+        ("(2, −3, 6) / 7", [2.0, -3.0, 6.0]),
+        ("(−1, −1, −1) / √3", [-1.0; 3]),
+    ];
+    let text = specification();
+    for (name, n) in normals {
+        let n = Vec3::from(n).normalize();
+        let (_, row) = text.split_once(&format!("| {name} | ")).expect("the row is printed");
+        let printed =
+            row.split(" | ").take(4).map(|c| c.trim_end_matches(" |").replace('−', "-").parse::<f32>());
+        let vectors = Reconstruction::OF_VECTORS.map(|method| reconstruct_signed(method, &vectors, n).x);
+        for (found, printed) in vectors.into_iter().chain([irradiance_signed(&radiance, n).x]).zip(printed) {
+            // Half a unit of the sixth decimal, and the bounds of IVG-IRR-13 with V = 3.
+            let printed = printed.expect("a number");
+            assert!((found - printed).abs() < 5e-7 + 3.0 * 6e-6, "{name}: {found}, printed {printed}");
+        }
+    }
 }
 
 #[test]

@@ -26,6 +26,9 @@ pub(super) fn markdown(quantiser: &str) -> String {
     let mut out = String::new();
     out.push_str(match quantiser {
         "rgb9e5" => "| colour | code | |\n|---|---|---|\n",
+        "packing" => {
+            "| encoding | scale_exponent | hemisphere | direction | colour |\n|---|---|---|---|---|\n"
+        }
         "ratio" => "| c_0 | codes 1 to 8 | c_1 … c_8, as the bits of binary32 |\n|---|---|---|\n",
         _ => "| code | u, v | point | direction, as the bits of binary32 |\n|---|---|---|---|\n",
     });
@@ -36,6 +39,13 @@ pub(super) fn markdown(quantiser: &str) -> String {
                 let texts = strings(&row["colour"]);
                 let colour = texts.iter().map(|c| c.replace('-', "−").replace("nan", "NaN"));
                 [list(colour.collect()), code(8), row["text"].as_str().unwrap().into()].join(" | ")
+            }
+            "packing" => {
+                let words = |key: &str| list(strings(&row[key]).into_iter().map(String::from).collect());
+                let encoding = format!("`{}`", row["encoding"].as_str().unwrap());
+                let exponent = row["scale_exponent"].as_integer().unwrap().to_string().replace('-', "−");
+                let hemisphere = row["hemisphere"].as_str().unwrap().replace('-', "−");
+                [encoding, exponent, hemisphere, words("direction"), words("colour")].join(" | ")
             }
             "ratio" => {
                 let mean = row["mean"].as_str().unwrap().to_string();
@@ -203,4 +213,46 @@ fn the_file_of_the_overview_has_the_printed_sizes() {
         assert_eq!(number.parse(), Ok(bytes(id)), "{id:?}");
     }
     assert_eq!((header.validity_records, header.bundle_count), (8, 16));
+}
+
+/// Numbers of `width` bytes each, as they lie in the payload.
+fn stored(payload: &[u8], width: usize) -> Vec<String> {
+    let number = |bytes: &[u8]| bytes.iter().rev().fold(0u64, |n, &b| n << 8 | u64::from(b));
+    payload
+        .chunks_exact(width)
+        .map(|bytes| format!("0x{:0digits$X}", number(bytes), digits = 2 * width))
+        .collect()
+}
+
+#[test]
+fn packed_hemispheres_have_the_printed_numbers() {
+    let mut vertex = [[[0.0; 3]; 3]; 6];
+    vertex[4] = [[1.0, 0.0, 2.0], [0.0, 0.5, 1.0], [0.25, 0.25, 0.125]];
+    vertex[1] = [[-1.0 / 1024.0, 4.0, 0.0], [-0.5, -1.0, 0.0], [0.0; 3]];
+    let lattice = Lattice::new([1; 3], [0.0; 3], [0.0; 3]).unwrap();
+    let table = rows("values", "packing");
+    assert_eq!(table.len(), 8, "the table was not read");
+    for row in table {
+        let encoding = Encoding::from_name(row["encoding"].as_str().unwrap()).unwrap();
+        let options = EncodeOptions { encoding, ..EncodeOptions::default() };
+        let file = encode(&GridSource::new(lattice, &[vertex]), &options).unwrap();
+        let Ok(Step::Consumed(_, header)) = Header::read(&file, &Limits::default()) else {
+            panic!("the header of {}", encoding.name())
+        };
+        assert_eq!(Some(i64::from(header.scale_exponent)), row["scale_exponent"].as_integer());
+        let range = header.record_range(RecordId::Corners);
+        let payload = &file[range.start as usize + 8..];
+        let hemisphere = if row["hemisphere"].as_str() == Some("+z") { 4 } else { 1 };
+        // Bytes of a colour and of a direction, and of one number of each.
+        let (colour, colour_number, direction, direction_number) = match encoding {
+            Encoding::PackedOct24 => (4, 4, 3, 3),
+            Encoding::PackedXyz24 => (4, 4, 3, 1),
+            Encoding::PairF16 => (6, 2, 6, 2),
+            _ => (12, 4, 12, 4),
+        };
+        let part = |start: usize, size: usize| &payload[start + hemisphere * size..][..size];
+        assert_eq!(stored(part(0, colour), colour_number), strings(&row["colour"]), "{}", encoding.name());
+        let found = stored(part(6 * colour, direction), direction_number);
+        assert_eq!(found, strings(&row["direction"]), "{}", encoding.name());
+    }
 }
