@@ -10,6 +10,7 @@ use super::pack::DirectionQuantiser;
 use super::{DirectionCode, unit};
 
 mod nearest;
+pub(crate) mod pack;
 
 /// The quantiser: for [`super::pack::pack_hemisphere`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -110,16 +111,6 @@ impl DirectionQuantiser for Octahedral24 {
 
     fn decode(code: &u32) -> [f32; 3] {
         decode_valid(*code)
-    }
-
-    fn encode_all<const N: usize>(
-        vectors: &[[f64; N]; 3],
-        axis: usize,
-        positive: bool,
-        codes: &mut [u32; N],
-        along: &mut [f64; N],
-    ) {
-        nearest::encode_all(vectors, axis, positive, codes, along);
     }
 }
 

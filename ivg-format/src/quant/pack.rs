@@ -11,7 +11,7 @@
 use crate::values::HemisphereVectors;
 
 /// The largest ratio of a colour component to the length of its vector (IVG-PACK-04).
-const LARGEST_RATIO: f64 = 1.5;
+pub(crate) const LARGEST_RATIO: f64 = 1.5;
 
 /// How an encoding stores a direction.
 pub trait DirectionQuantiser {

@@ -6,6 +6,7 @@ use super::super::packed::{COLOUR_BYTES, DIRECTION_BYTES};
 use super::{Fault, GATHERED, settle};
 use crate::header::SCALE_EXPONENTS;
 use crate::quant::direction::Octahedral24;
+use crate::quant::direction::pack::{self, PackedTogether};
 use crate::quant::pack::{DirectionQuantiser, PackedAll, pack_all, pack_hemisphere};
 use crate::quant::pair::{HalfDirection, SingleDirection};
 use crate::quant::rgb9e5::Unscaled;
@@ -18,7 +19,7 @@ use alloc::vec::Vec;
 const VERTICES: usize = 16;
 
 /// What is kept of a hemisphere until it is written.
-pub(crate) trait Keep: DirectionQuantiser {
+pub(crate) trait Keep: DirectionQuantiser + Sized {
     /// A direction and a colour.
     type Kept: Copy + Default;
 
@@ -26,6 +27,47 @@ pub(crate) trait Keep: DirectionQuantiser {
     const STORABLE: f32;
 
     fn keep(direction: Self::Code, colour: [f64; 3]) -> Self::Kept;
+
+    /// Keeps one hemisphere of some vertices; `false` if a component is not finite.
+    fn keep_all<const N: usize>(
+        vectors: &[HemisphereVectors; N],
+        hemisphere: usize,
+        kept: &mut [[Self::Kept; HEMISPHERES]; N],
+        largest: &mut Largest<N>,
+    ) -> bool {
+        let PackedAll { directions, colours } = pack_all::<Self, N>(vectors, hemisphere);
+        for (n, kept) in kept.iter_mut().enumerate() {
+            kept[hemisphere] = Self::keep(directions[n], colours.each_ref().map(|component| component[n]));
+        }
+        for component in &colours {
+            for (most, &c) in largest.exact.iter_mut().zip(component) {
+                *most = if c > *most { c } else { *most };
+            }
+        }
+        let finite = |all, vertex: &HemisphereVectors| {
+            vertex[hemisphere].as_flattened().iter().fold(all, |all, c| all & c.is_finite())
+        };
+        vectors.iter().fold(true, finite)
+    }
+}
+
+/// The largest components of colours, found for `N` vertices side by side.
+pub(crate) struct Largest<const N: usize> {
+    /// Of colours that are as they should be.
+    exact: [f64; N],
+    /// Of colours that are off by [`pack::ERROR`].
+    near: [f32; N],
+}
+
+impl<const N: usize> Largest<N> {
+    const NONE: Self = Self { exact: [0.0; N], near: [0.0; N] };
+
+    /// The largest is no less than the first and no more than the second.
+    fn bounds(&self) -> (f64, f64) {
+        let exact = self.exact.iter().fold(0.0, |most: f64, &c| most.max(c));
+        let near = f64::from(self.near.iter().fold(0.0, |most: f32, &c| most.max(c)));
+        (exact.max(near * (1.0 - 2.0 * pack::ERROR)), exact.max(near * (1.0 + 2.0 * pack::ERROR)))
+    }
 }
 
 /// A direction code of three bytes and a colour.
@@ -38,8 +80,7 @@ pub(crate) struct Packed {
 
 impl Packed {
     #[inline(always)]
-    fn new(direction: u32, colour: [f64; 3]) -> Self {
-        let Unscaled { mantissas, exponent } = Unscaled::new(colour);
+    fn new(direction: u32, Unscaled { mantissas, exponent }: Unscaled) -> Self {
         Self { direction: direction | u32::from(exponent) << 24, mantissas }
     }
 
@@ -62,7 +103,43 @@ impl Keep for Octahedral24 {
 
     #[inline(always)]
     fn keep(direction: u32, colour: [f64; 3]) -> Packed {
-        Packed::new(direction, colour)
+        Packed::new(direction, Unscaled::new(colour))
+    }
+
+    fn keep_all<const N: usize>(
+        vectors: &[HemisphereVectors; N],
+        hemisphere: usize,
+        kept: &mut [[Packed; HEMISPHERES]; N],
+        largest: &mut Largest<N>,
+    ) -> bool {
+        let PackedTogether { directions, mantissas, exponents, largest: near, doubt } =
+            pack::pack_together(vectors, hemisphere);
+        for (n, kept) in kept.iter_mut().enumerate() {
+            kept[hemisphere] =
+                Packed { direction: directions[n] | exponents[n] << 24, mantissas: mantissas[n] };
+        }
+        for n in 0..N {
+            let certain = if doubt[n] == 0 { near[n] } else { 0.0 };
+            largest.near[n] = if certain > largest.near[n] { certain } else { largest.near[n] };
+        }
+        if doubt.iter().fold(0, |any, doubt| any | doubt) == 0 {
+            return true;
+        }
+        let mut finite = true;
+        for n in (0..N).filter(|&n| doubt[n] != 0) {
+            let vectors = &vectors[n][hemisphere];
+            kept[n][hemisphere] = if *vectors == [[0.0; 3]; 3] {
+                let (direction, colour) = pack::black(hemisphere);
+                Packed::new(direction, colour)
+            } else if let Some(packed) = pack_hemisphere::<Self>(vectors, hemisphere) {
+                largest.exact[n] = packed.colour.iter().fold(largest.exact[n], |most, &c| most.max(c));
+                Self::keep(packed.direction, packed.colour)
+            } else {
+                finite = false;
+                Packed::default()
+            };
+        }
+        finite
     }
 }
 
@@ -72,7 +149,7 @@ impl Keep for Xyz24 {
 
     #[inline(always)]
     fn keep(direction: u32, colour: [f64; 3]) -> Packed {
-        Packed::new(direction, colour)
+        Packed::new(direction, Unscaled::new(colour))
     }
 }
 
@@ -109,16 +186,22 @@ impl<'a, Q: Keep> Hemispheres<'a, Q> {
         let highest = if Q::STORABLE == f32::MAX { 0 } else { *SCALE_EXPONENTS.end() };
         let limit = f64::from(Q::STORABLE) * power_of_two_f64(i32::from(highest));
         let mut kept = Vec::with_capacity(vectors.len());
-        let mut largest = 0.0;
+        let mut largest = Largest::NONE;
+        let mut largest_rest = Largest::NONE;
         let (chunks, rest) = vectors.as_chunks::<VERTICES>();
         let (ones, _) = rest.as_chunks::<1>();
         for chunk in chunks {
             append::<Q, VERTICES>(&mut kept, chunk, &mut largest, limit)?;
         }
         for one in ones {
-            append::<Q, 1>(&mut kept, one, &mut largest, limit)?;
+            append::<Q, 1>(&mut kept, one, &mut largest_rest, limit)?;
         }
-        Ok(Self { vectors, kept, scale_exponent: settle(largest, Q::STORABLE, fixed)? })
+        let ((least, most), (least_rest, most_rest)) = (largest.bounds(), largest_rest.bounds());
+        let mut scale_exponent = settle(most.max(most_rest), Q::STORABLE, fixed);
+        if scale_exponent != settle(least.max(least_rest), Q::STORABLE, fixed) {
+            scale_exponent = settle(exactly_largest::<Q>(vectors), Q::STORABLE, fixed);
+        }
+        Ok(Self { vectors, kept, scale_exponent: scale_exponent? })
     }
 
     pub(super) fn scale_exponent(&self) -> i16 {
@@ -208,26 +291,29 @@ fn little_endian<const NUMBER: usize, const ALL: usize>(numbers: [[u8; NUMBER]; 
     bytes
 }
 
+/// The largest component of a colour: where its bounds leave open which scale exponent it needs.
+#[cold]
+fn exactly_largest<Q: Keep>(vectors: &[HemisphereVectors]) -> f64 {
+    let hemispheres = vectors.iter().flat_map(|vertex| vertex.iter().enumerate());
+    let packed = hemispheres.filter_map(|(h, vectors)| pack_hemisphere::<Q>(vectors, h));
+    packed.flat_map(|packed| packed.colour).fold(0.0, f64::max)
+}
+
 /// Packs every hemisphere of some vertices, which must be finite and their colours no more than the limit.
 fn append<Q: Keep, const N: usize>(
     kept: &mut Vec<[Q::Kept; HEMISPHERES]>,
     vectors: &[HemisphereVectors; N],
-    largest: &mut f64,
+    largest: &mut Largest<N>,
     limit: f64,
 ) -> Result<(), Fault> {
-    let first = kept.len();
-    let components = vectors.as_flattened().as_flattened().as_flattened();
-    let finite = components.iter().fold(true, |all, c| all & c.is_finite());
     let mut vertices = [[Q::Kept::default(); HEMISPHERES]; N];
+    let mut finite = true;
     for hemisphere in 0..HEMISPHERES {
-        let PackedAll { directions, colours } = pack_all::<Q, N>(vectors, hemisphere);
-        *largest = colours.as_flattened().iter().fold(*largest, |most, &c| if c > most { c } else { most });
-        for (n, vertex) in vertices.iter_mut().enumerate() {
-            vertex[hemisphere] = Q::keep(directions[n], colours.each_ref().map(|component| component[n]));
-        }
+        finite &= Q::keep_all(vectors, hemisphere, &mut vertices, largest);
     }
-    if !finite || *largest > limit {
-        return Err(fault::<Q>(first, vectors, limit));
+    // What is not exact is far from the limit.
+    if !finite || largest.exact.iter().fold(false, |any, &c| any | (c > limit)) {
+        return Err(fault::<Q>(kept.len(), vectors, limit));
     }
     kept.extend_from_slice(&vertices);
     Ok(())

@@ -8,9 +8,8 @@
 //! can the corner beyond the longest side be as near. Hence four candidates: with the largest coordinate left out, the
 //! corners of the square of whole numbers around the other two. The tests compare with a search of many more.
 
-use super::{Octahedral24, SCALE, fold, lowest_code};
-use crate::quant::pack::DirectionQuantiser;
-use crate::quant::{normalised, unit};
+use super::{SCALE, fold, lowest_code};
+use crate::quant::normalised;
 
 /// The corners of a square cell.
 const CORNERS: [[i32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
@@ -19,9 +18,12 @@ const CORNERS: [[i32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 /// binary64 makes of equal distances, and far less than any direction of a grid is known.
 const TIE: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// In binary32, squared distances of up to 4 are off by less than 2^-19: what differs by less than this is decided in
-/// binary64.
-const DOUBT: f32 = 1.0 / (1u32 << 14) as f32;
+/// Differences of squared distances that are less than this part are decided in binary64: what [`encode_all`] has in
+/// binary32 may be off by 2^-7.2. Two coordinates a, b of a place are off by at most η = 2^-10 together: by 2047 × 2^-23 × 1.5
+/// since the vector is, and by 2047 × 2^-23 × 3.5 × 2/3 since its length, their quotient and the product are, of which the two
+/// have two thirds at most. A squared distance is 2 (x² + y² + xy) or less, so that an error of η changes the difference of
+/// two corners by no more than 2 × √6 × √2 η; all other rounding is below 2^-18.
+const DOUBT: f32 = 1.0 / (1u32 << 7) as f32;
 
 /// The lowest of the nearest codes; `None` for a vector without direction.
 pub(super) fn nearest(vector: [f64; 3]) -> Option<u32> {
@@ -123,21 +125,30 @@ struct Places<const N: usize> {
     doubt: [i32; N],
 }
 
-/// Many codes at once, and the component along `axis` of their directions: in binary32 where that leaves no doubt which
-/// code is the nearest, for the rest as [`super::encode_octahedral24_in_hemisphere`].
+/// Codes found together.
+pub(super) struct Together<const N: usize> {
+    pub(super) codes: [u32; N],
+    /// The coordinates along the axis of the codes' points.
+    pub(super) along: [f32; N],
+    /// The squared lengths of the codes' points.
+    pub(super) squared: [f32; N],
+    /// All bits set where another code may be nearer, or inside the hemisphere.
+    pub(super) doubt: [i32; N],
+}
+
+/// Many codes at once, in binary32, of vectors whose coordinates are off by no more than 1.5 × 2^-23 of the sum of their
+/// magnitudes together: where there is no doubt, those of [`super::encode_octahedral24_in_hemisphere`].
+#[inline(always)]
 pub(super) fn encode_all<const N: usize>(
-    vectors: &[[f64; N]; 3],
+    vectors: &[[f32; N]; 3],
     axis: usize,
     positive: bool,
-    codes: &mut [u32; N],
-    along: &mut [f64; N],
-) {
+) -> Together<N> {
     let places = places(vectors, axis, positive);
     let (corner, doubt) = nearest_corners(&places);
     let Places { largest, base: [base_a, base_b], negative: [negative_x, negative_y, negative_z], .. } =
         &places;
-    let mut component = [0.0; N];
-    let mut squared = [0.0; N];
+    let mut found = Together { codes: [0; N], along: [0.0; N], squared: [0.0; N], doubt };
     for n in 0..N {
         let a = base_a[n] + (corner[n] & 1);
         let b = base_b[n] + (corner[n] >> 1);
@@ -150,37 +161,41 @@ pub(super) fn encode_all<const N: usize>(
         let x = (x ^ negative_x[n]) - negative_x[n];
         let y = (y ^ negative_y[n]) - negative_y[n];
         let z = (z ^ negative_z[n]) - negative_z[n];
-        codes[n] = code_of([x, y, z]);
+        found.codes[n] = code_of([x, y, z]);
         let (x, y, z) = (x as f32, y as f32, z as f32);
-        squared[n] = x * x + y * y + z * z;
-        component[n] = match axis {
+        found.squared[n] = x * x + y * y + z * z;
+        found.along[n] = match axis {
             0 => x,
             1 => y,
             _ => z,
         };
     }
-    for n in 0..N {
-        along[n] = f64::from((f64::from(component[n]) * unit::inverse_root(squared[n])) as f32);
-    }
-    if doubt.iter().fold(0, |any, doubt| any | doubt) != 0 {
-        for n in (0..N).filter(|&n| doubt[n] != 0) {
-            let vector = vectors.each_ref().map(|c| c[n]);
-            codes[n] = Octahedral24::encode_or_axis(vector, axis, positive);
-            along[n] = f64::from(Octahedral24::decode(&codes[n])[axis]);
+    found
+}
+
+/// The code of a coordinate axis.
+pub(super) fn axis_code(axis: usize, positive: bool) -> u32 {
+    code_of([0, 1, 2].map(|i| {
+        if i != axis {
+            0
+        } else if positive {
+            SCALE
+        } else {
+            -SCALE
         }
-    }
+    }))
 }
 
 /// All bits set or none.
 #[inline(always)]
-fn mask(condition: bool) -> i32 {
+pub(super) fn mask(condition: bool) -> i32 {
     -i32::from(condition)
 }
 
 #[inline(always)]
-fn places<const N: usize>(vectors: &[[f64; N]; 3], axis: usize, positive: bool) -> Places<N> {
-    /// Sums with 1.5 × 2^52 are rounded to whole numbers, the lowest bits of which are those of an i32.
-    const WHOLE: f64 = 6_755_399_441_055_744.0;
+fn places<const N: usize>(vectors: &[[f32; N]; 3], axis: usize, positive: bool) -> Places<N> {
+    /// Sums with 1.5 × 2^23 have no digits behind the point; the lowest bits are the whole number.
+    const WHOLE: f32 = 12_582_912.0;
     let mut out = Places {
         largest: [0; N],
         base: [[0; N]; 2],
@@ -196,7 +211,7 @@ fn places<const N: usize>(vectors: &[[f64; N]; 3], axis: usize, positive: bool) 
     let [place_a, place_b, place_c] = place;
     for n in 0..N {
         let (x, y, z) = (xs[n].abs(), ys[n].abs(), zs[n].abs());
-        let scale = f64::from(SCALE) / (x + y + z);
+        let scale = SCALE as f32 / (x + y + z);
         let x_over_y = x > y;
         let x_or_y = if x_over_y { x } else { y };
         let exchanged = x_or_y > z;
@@ -207,11 +222,11 @@ fn places<const N: usize>(vectors: &[[f64; N]; 3], axis: usize, positive: bool) 
         let (down_a, down_b) = ((a - 0.5) + WHOLE, (b - 0.5) + WHOLE);
         base_a[n] = down_a.to_bits() as i32 & 0xFFF;
         base_b[n] = down_b.to_bits() as i32 & 0xFFF;
-        above_a[n] = (a - (down_a - WHOLE)) as f32;
-        above_b[n] = (b - (down_b - WHOLE)) as f32;
-        place_a[n] = a as f32;
-        place_b[n] = b as f32;
-        place_c[n] = c as f32;
+        above_a[n] = a - (down_a - WHOLE);
+        above_b[n] = b - (down_b - WHOLE);
+        place_a[n] = a;
+        place_b[n] = b;
+        place_c[n] = c;
         largest[n] = if x_largest {
             0
         } else if y_largest {
