@@ -244,13 +244,16 @@ impl<'a, Q: Keep> Hemispheres<'a, Q> {
 }
 
 impl<Q: Keep<Kept = Packed>> Hemispheres<'_, Q> {
+    #[cold]
+    fn packed_colour(&self, vertex: usize, hemisphere: usize) -> u32 {
+        let [code] = rgb9e5::encode_all(&self.colour(vertex, hemisphere).map(|c| [c]));
+        code
+    }
+
     pub(super) fn fill_packed(&self, payload: &mut [u8], vertices: &[u64]) {
         self.fill_both::<COLOUR_BYTES, DIRECTION_BYTES>(payload, vertices, |vertex, hemisphere, kept| {
             let colour = kept.colour().scaled(self.scale_exponent);
-            let colour = colour.unwrap_or_else(|| {
-                let [code] = rgb9e5::encode_all(&self.colour(vertex, hemisphere).map(|c| [c]));
-                code
-            });
+            let colour = colour.unwrap_or_else(|| self.packed_colour(vertex, hemisphere));
             let [low, middle, high, _] = kept.direction.to_le_bytes();
             (colour.to_le_bytes(), [low, middle, high])
         });

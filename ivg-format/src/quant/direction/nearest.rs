@@ -22,7 +22,7 @@ const TIE: f64 = 1.0 / (1u64 << 36) as f64;
 /// binary32 may be off by 2^-7.2. Two coordinates a, b of a place are off by at most η = 2^-10 together: by 2047 × 2^-23 × 1.5
 /// since the vector is, and by 2047 × 2^-23 × 3.5 × 2/3 since its length, their quotient and the product are, of which the two
 /// have two thirds at most. A squared distance is 2 (x² + y² + xy) or less, so that an error of η changes the difference of
-/// two corners by no more than 2 × √6 × √2 η; all other rounding is below 2^-18.
+/// two corners by no more than 2 × √6 × √2 η; everything else is below 2^-14.
 const DOUBT: f32 = 1.0 / (1u32 << 7) as f32;
 
 /// The lowest of the nearest codes; `None` for a vector without direction.
@@ -111,8 +111,8 @@ pub(super) fn nearest_above(vector: [f64; 3], axis: usize, positive: bool) -> Op
 
 /// The places of `N` directions on the octahedron.
 struct Places<const N: usize> {
-    /// Which coordinate is the largest, and was exchanged with the third.
-    largest: [i32; N],
+    /// All bits set where the first coordinate, or the second, is the largest, and was exchanged with the third.
+    exchanged: [[i32; N]; 2],
     /// The whole numbers below the other two.
     base: [[i32; N]; 2],
     /// What is above them.
@@ -146,29 +146,33 @@ pub(super) fn encode_all<const N: usize>(
 ) -> Together<N> {
     let places = places(vectors, axis, positive);
     let (corner, doubt) = nearest_corners(&places);
-    let Places { largest, base: [base_a, base_b], negative: [negative_x, negative_y, negative_z], .. } =
-        &places;
+    let Places { exchanged: [first, second], base: [base_a, base_b], negative, .. } = &places;
+    let [negative_x, negative_y, negative_z] = negative;
+    let side = if positive { 1.0 } else { -1.0 };
     let mut found = Together { codes: [0; N], along: [0.0; N], squared: [0.0; N], doubt };
     for n in 0..N {
         let a = base_a[n] + (corner[n] & 1);
         let b = base_b[n] + (corner[n] >> 1);
         let c = SCALE - a - b;
-        let (first, second) = (mask(largest[n] == 0), mask(largest[n] == 1));
-        let exchange = |one: i32, other: i32, mask: i32| one ^ ((one ^ other) & mask);
-        let x = exchange(a, c, first);
-        let y = exchange(b, c, second);
-        let z = exchange(exchange(c, a, first), b, second);
-        let x = (x ^ negative_x[n]) - negative_x[n];
-        let y = (y ^ negative_y[n]) - negative_y[n];
-        let z = (z ^ negative_z[n]) - negative_z[n];
-        found.codes[n] = code_of([x, y, z]);
+        let choose = |one: i32, other: i32, mask: i32| one ^ ((one ^ other) & mask);
+        let x = choose(a, c, first[n]);
+        let y = choose(b, c, second[n]);
+        let z = choose(choose(c, a, first[n]), b, second[n]);
+        // As `code_of`, from magnitudes and signs: below the equator, what is 0 counts as negative.
+        let u = choose(x, SCALE - y, negative_z[n]);
+        let v = choose(y, SCALE - x, negative_z[n]);
+        let (minus_u, minus_v) = (negative_x[n] | mask(x == 0), negative_y[n] | mask(y == 0));
+        let (u, v) = ((u ^ minus_u) - minus_u, (v ^ minus_v) - minus_v);
+        found.codes[n] = (u + SCALE) as u32 | ((v + SCALE) as u32) << 12;
         let (x, y, z) = (x as f32, y as f32, z as f32);
         found.squared[n] = x * x + y * y + z * z;
-        found.along[n] = match axis {
-            0 => x,
-            1 => y,
-            _ => z,
-        };
+        // Where there is no doubt, the point is on the side of the axis.
+        found.along[n] = side
+            * match axis {
+                0 => x,
+                1 => y,
+                _ => z,
+            };
     }
     found
 }
@@ -197,7 +201,7 @@ fn places<const N: usize>(vectors: &[[f32; N]; 3], axis: usize, positive: bool) 
     /// Sums with 1.5 × 2^23 have no digits behind the point; the lowest bits are the whole number.
     const WHOLE: f32 = 12_582_912.0;
     let mut out = Places {
-        largest: [0; N],
+        exchanged: [[0; N]; 2],
         base: [[0; N]; 2],
         above: [[0.0; N]; 2],
         place: [[0.0; N]; 3],
@@ -207,7 +211,8 @@ fn places<const N: usize>(vectors: &[[f32; N]; 3], axis: usize, positive: bool) 
     let side = if positive { 1.0 } else { -1.0 };
     let [xs, ys, zs] = vectors;
     let sides = &vectors[axis];
-    let Places { largest, base: [base_a, base_b], above: [above_a, above_b], place, doubt, .. } = &mut out;
+    let Places { exchanged, base: [base_a, base_b], above: [above_a, above_b], place, doubt, .. } = &mut out;
+    let [first, second] = exchanged;
     let [place_a, place_b, place_c] = place;
     for n in 0..N {
         let (x, y, z) = (xs[n].abs(), ys[n].abs(), zs[n].abs());
@@ -227,13 +232,7 @@ fn places<const N: usize>(vectors: &[[f32; N]; 3], axis: usize, positive: bool) 
         place_a[n] = a;
         place_b[n] = b;
         place_c[n] = c;
-        largest[n] = if x_largest {
-            0
-        } else if y_largest {
-            1
-        } else {
-            2
-        };
+        (first[n], second[n]) = (mask(x_largest), mask(y_largest));
         // Rounding to the whole number below may take one too many off, but the component is then next to 1.
         let inside = sides[n] * side * scale >= 1.5;
         doubt[n] = mask(!inside);
@@ -259,16 +258,22 @@ fn nearest_corners<const N: usize>(places: &Places<N>) -> ([i32; N], [i32; N]) {
         let (a, b, c) = (place_a[n], place_b[n], place_c[n]);
         let (to_right, to_top) = (a - c, b - c);
         let over_squared = 1.0 / (a * a + b * b + c * c);
-        let distance = |x: f32, y: f32| {
-            let along = to_right * x + to_top * y;
+        let distance = |square: f32, along: f32| {
             let share = along * over_squared;
-            let across = 2.0 * (x * x + y * y + x * y) - along * share;
-            // One over (1 - share)², whose share is at most 0.002: the next term is below 2^-24.
-            across * (1.0 + share * (2.0 + 3.0 * share))
+            let across = square - along * share;
+            // One over (1 - share)², whose share is at most 0.002: the next term is below 2^-15.
+            across + across * (share + share)
         };
+        // At each corner, 2 (x² + y² + xy) and the part along the direction, from those at the lower left.
         let (x, y) = (above_a[n], above_b[n]);
-        let (here, beside) = (distance(x, y), distance(x - 1.0, y));
-        let (above, beyond) = (distance(x, y - 1.0), distance(x - 1.0, y - 1.0));
+        let (two_x, two_y) = (x + x, y + y);
+        let square = two_x * (x + y) + two_y * y;
+        let (less_x, less_y) = (2.0 - two_x - (two_x + two_y), 2.0 - two_y - (two_x + two_y));
+        let along = to_right * x + to_top * y;
+        let here = distance(square, along);
+        let beside = distance(square + less_x, along - to_right);
+        let above = distance(square + less_y, along - to_top);
+        let beyond = distance(square + (less_x + less_y) + 2.0, along - to_right - to_top);
         let (low, high) = (lesser(here, beside), greater(here, beside));
         let (low_up, high_up) = (lesser(above, beyond), greater(above, beyond));
         let least = lesser(low, low_up);
