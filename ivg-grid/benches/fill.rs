@@ -1,7 +1,8 @@
 //! What filling costs: `cargo bench -p ivg-grid --bench fill`.
 //!
-//! Prints a table of ratios, each measured in this run, with the target beside it. Of several measurements the least
-//! counts: what else a machine does only adds. The unit of a full fill is one copy of the values of the grid.
+//! Prints a table of ratios, each measured in this run, with the target beside it. What is
+//! compared is measured in turns, several times each, and the medians count. The unit of a full fill is one copy of the
+//! values of the grid.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -15,12 +16,10 @@ const VERTICES: usize = SIDE * SLICE;
 
 fn main() {
     let light: Vec<HemisphereVectors> = (0..VERTICES).map(light).collect();
-    let mut copy = light.clone();
-    let memcpy = least(61, || copy.copy_from_slice(black_box(&light)));
-    println!("32 x 32 x 32 vertices of 54 numbers: one copy takes {:.3} ms\n", 1e3 * memcpy);
+    println!("32 x 32 x 32 vertices of 54 numbers\n");
     for (name, walls) in [("open", false), ("with walls and invalid vertices", true)] {
         println!("{name}:");
-        full(&light, walls, memcpy);
+        full(&light, walls);
         for per_slice in [64, 1] {
             stream(&light, walls, per_slice);
         }
@@ -29,17 +28,24 @@ fn main() {
 }
 
 /// Full fills at several shares received: over a copy, and how much of it is smoothing.
-fn full(light: &[HemisphereVectors], walls: bool, memcpy: f64) {
+fn full(light: &[HemisphereVectors], walls: bool) {
     let start = lattice(walls);
     let mut grid = start.clone();
     grid.set(0, &light[0]);
-    let once = least(25, || {
+    let mut to = light.to_vec();
+    let mut copy = || to.copy_from_slice(black_box(light));
+    let mut once = || {
         black_box(ivg_grid::fill(&grid, &FillOptions::default()));
-    });
-    println!("  {:48} {:6.2} copies", "fill() of one vertex, pyramid and memory included", once / memcpy);
+    };
+    let [once, unit] = medians([&mut once, &mut copy]);
+    println!(
+        "  {:48} {:6.2} copies",
+        "fill() of one vertex, pyramid and memory included",
+        once.median / unit.median
+    );
     let [mut worst, mut worst_share] = [0.0_f64; 2];
     for per_slice in [0, 3, 10, 51, 256, 512, 768] {
-        let timed = |options: FillOptions| {
+        let filled = |options: FillOptions| {
             let mut filled = FilledGrid::new(start.clone(), options);
             filled.set(0, &light[0]);
             order(per_slice.max(1))
@@ -47,26 +53,27 @@ fn full(light: &[HemisphereVectors], walls: bool, memcpy: f64) {
                 .flatten()
                 .for_each(|v| filled.set(v, &light[v]));
             filled.grid();
-            least(25, || {
+            move || {
                 filled.forget_filled();
                 black_box(filled.grid());
-            })
+            }
         };
-        let whole = timed(FillOptions::default());
-        let rough = timed(FillOptions { smoothing: Smoothing::Nowhere, ..FillOptions::default() });
-        let paper = timed(FillOptions::PAPER);
-        let share = (whole - rough) / whole;
+        let mut whole = filled(FillOptions::default());
+        let mut rough = filled(FillOptions { smoothing: Smoothing::Nowhere, ..FillOptions::default() });
+        let mut paper = filled(FillOptions::PAPER);
+        let [whole, rough, paper, unit] = medians([&mut whole, &mut rough, &mut paper, &mut copy]);
+        let share = (whole.median - rough.median) / whole.median;
         println!(
-            "  full fill, {:5.2} % received                        {:6.2} copies, smoothing {:3.0} %; as in the paper {:6.2} copies",
+            "  full fill, {:5.2} % received                        {:6.2} copies ({:.2} to {:.2}), smoothing {:3.0} %; as in the paper {:6.2} copies; a copy {:.3} ms",
             100.0 * per_slice as f64 / SLICE as f64,
-            whole / memcpy,
+            whole.median / unit.median,
+            whole.quartiles[0] / unit.median,
+            whole.quartiles[1] / unit.median,
             100.0 * share,
-            paper / memcpy
+            paper.median / unit.median,
+            1e3 * unit.median,
         );
-        if per_slice == 0 {
-            println!("  {:48} {:6.2} copies", "of it pyramid, copy and memory", (once - whole) / memcpy);
-        }
-        (worst, worst_share) = (worst.max(whole / memcpy), worst_share.max(share));
+        (worst, worst_share) = (worst.max(whole.median / unit.median), worst_share.max(share));
     }
     verdict("largest full fill over a copy", worst, 12.0);
     verdict("largest share of smoothing", worst_share, 0.4);
@@ -74,7 +81,7 @@ fn full(light: &[HemisphereVectors], walls: bool, memcpy: f64) {
 
 /// Incremental over full fills of the same received vertices, request by request, over a whole stream.
 fn stream(light: &[HemisphereVectors], walls: bool, per_slice: usize) {
-    let mut times = vec![[f64::INFINITY; 2]; SLICE / per_slice];
+    let mut times = vec![[const { Vec::new() }; 2]; SLICE / per_slice];
     for _ in 0..5 {
         let mut kept = FilledGrid::new(lattice(walls), FillOptions::default());
         let mut again = kept.clone();
@@ -82,15 +89,17 @@ fn stream(light: &[HemisphereVectors], walls: bool, per_slice: usize) {
             request.iter().for_each(|&v| kept.set(v, &light[v]));
             request.iter().for_each(|&v| again.set(v, &light[v]));
             again.forget_filled();
-            *incremental = incremental.min(seconds(|| {
+            incremental.push(seconds(|| {
                 black_box(kept.grid());
             }));
-            *full = full.min(seconds(|| {
+            full.push(seconds(|| {
                 black_box(again.grid());
             }));
         }
         assert!(kept.grid().vectors() == again.grid().vectors());
     }
+    let times: Vec<[f64; 2]> =
+        times.into_iter().map(|pair| pair.map(|times| Spread::of(times).median)).collect();
     let ratios: Vec<f64> = times.iter().map(|[incremental, full]| incremental / full).collect();
     let [incremental_sum, full_sum] = [0, 1].map(|n| times[1..].iter().map(|pair| pair[n]).sum::<f64>());
     // The first request builds the pyramid in both.
@@ -173,7 +182,30 @@ fn seconds(work: impl FnOnce()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-fn least(times: usize, mut work: impl FnMut()) -> f64 {
-    work();
-    (0..times).map(|_| seconds(&mut work)).fold(f64::INFINITY, f64::min)
+/// Several measurements of one thing.
+struct Spread {
+    median: f64,
+    /// A quarter of the measurements is below the first, a quarter above the second.
+    quartiles: [f64; 2],
+}
+
+impl Spread {
+    fn of(mut times: Vec<f64>) -> Self {
+        times.sort_by(f64::total_cmp);
+        let at = |quarter: usize| times[(times.len() - 1) * quarter / 4];
+        Self { median: at(2), quartiles: [at(1), at(3)] }
+    }
+}
+
+/// How long each takes, measured in turns. The first half of a turn does not count: it finds in the caches what the one
+/// before left there, which would make the copy, the unit, seem slow.
+fn medians<const N: usize>(mut works: [&mut dyn FnMut(); N]) -> [Spread; N] {
+    let mut times = [const { Vec::new() }; N];
+    for _ in 0..7 {
+        for (work, times) in works.iter_mut().zip(&mut times) {
+            (0..5).for_each(|_| work());
+            times.extend((0..5).map(|_| seconds(&mut *work)));
+        }
+    }
+    times.map(Spread::of)
 }

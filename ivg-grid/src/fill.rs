@@ -33,6 +33,7 @@ use crate::IrradianceGrid;
 use crate::filled::FilledGrid;
 
 mod marks;
+mod push;
 mod push_pull;
 mod row;
 mod runs;

@@ -1,5 +1,7 @@
 //! The arithmetic of filling on the numbers of one vertex: means that cannot leave the range of what goes into them.
 
+use glam::Vec4;
+
 /// The numbers of one vertex: 54 of irradiance vectors, 27 of radiance harmonics.
 pub(super) type Row<const W: usize> = [f32; W];
 
@@ -26,12 +28,19 @@ impl Range {
     #[inline]
     fn mend<const W: usize>(self, to: &mut Row<W>, rows: &[&Row<W>]) {
         if self == Self::Whole {
-            for (i, number) in to.iter_mut().enumerate().filter(|(_, number)| !number.is_finite()) {
-                let all = || rows.iter().map(|row| row[i]);
-                let mean = (all().map(f64::from).sum::<f64>() / rows.len() as f64) as f32;
-                *number = mean.clamp(all().fold(f32::MAX, f32::min), all().fold(f32::MIN, f32::max));
-            }
+            mend(to, rows);
         }
+    }
+}
+
+/// Computes those numbers again that overflowed on the way to the mean of `rows`.
+#[cold]
+#[inline(never)]
+fn mend<const W: usize>(to: &mut Row<W>, rows: &[&Row<W>]) {
+    for (i, number) in to.iter_mut().enumerate().filter(|(_, number)| !number.is_finite()) {
+        let all = || rows.iter().map(|row| row[i]);
+        let mean = (all().map(f64::from).sum::<f64>() / rows.len() as f64) as f32;
+        *number = mean.clamp(all().fold(f32::MAX, f32::min), all().fold(f32::MIN, f32::max));
     }
 }
 
@@ -51,28 +60,41 @@ impl Range {
 #[inline]
 pub(super) fn mean<const W: usize>(to: &mut Row<W>, rows: &[&Row<W>], range: Range) {
     const THIRD: f32 = 1.0 / 3.0;
-    let towards = |from: f32, share: f32, other: f32| from + share * (other - from);
+    let towards = |from: Vec4, share: f32, other: Vec4| from + share * (other - from);
     match *rows {
         [a] => *to = *a,
-        [a, b] => write(to, |i| mean_of_2(a[i], b[i])),
-        [a, b, c] => write(to, |i| towards(mean_of_2(a[i], b[i]), THIRD, c[i])),
-        [a, b, c, d] => write(to, |i| mean_of_4([a[i], b[i], c[i], d[i]])),
-        [a, b, c, d, e] => write(to, |i| towards(mean_of_4([a[i], b[i], c[i], d[i]]), 0.2, e[i])),
+        [a, b] => write(to, |i| mean_of_2(block(a, i), block(b, i))),
+        [a, b, c] => write(to, |i| towards(mean_of_2(block(a, i), block(b, i)), THIRD, block(c, i))),
+        [a, b, c, d] => write(to, |i| mean_of_4([block(a, i), block(b, i), block(c, i), block(d, i)])),
+        [a, b, c, d, e] => write(to, |i| {
+            towards(mean_of_4([block(a, i), block(b, i), block(c, i), block(d, i)]), 0.2, block(e, i))
+        }),
         [a, b, c, d, e, f] => {
-            write(to, |i| towards(mean_of_4([a[i], b[i], c[i], d[i]]), THIRD, mean_of_2(e[i], f[i])));
+            write(to, |i| {
+                towards(
+                    mean_of_4([block(a, i), block(b, i), block(c, i), block(d, i)]),
+                    THIRD,
+                    mean_of_2(block(e, i), block(f, i)),
+                )
+            });
         }
         [a, b, c, d, e, f, g] => write(to, |i| {
-            let of_three = towards(mean_of_2(e[i], f[i]), THIRD, g[i]);
-            towards(mean_of_4([a[i], b[i], c[i], d[i]]), 3.0 / 7.0, of_three)
+            let of_three = towards(mean_of_2(block(e, i), block(f, i)), THIRD, block(g, i));
+            towards(mean_of_4([block(a, i), block(b, i), block(c, i), block(d, i)]), 3.0 / 7.0, of_three)
         }),
         [a, b, c, d, e, f, g, h] => {
-            write(to, |i| mean_of_8([a[i], b[i], c[i], d[i]], [e[i], f[i], g[i], h[i]]));
+            write(to, |i| {
+                mean_of_8(
+                    [block(a, i), block(b, i), block(c, i), block(d, i)],
+                    [block(e, i), block(f, i), block(g, i), block(h, i)],
+                )
+            });
         }
         _ => {
             let mut mean = *rows[0];
             for (n, row) in (2..).zip(&rows[1..]) {
                 let share = 1.0 / n as f32;
-                mean.iter_mut().zip(*row).for_each(|(mean, value)| *mean = towards(*mean, share, *value));
+                mean.iter_mut().zip(*row).for_each(|(mean, value)| *mean += share * (value - *mean));
             }
             *to = mean;
         }
@@ -81,35 +103,35 @@ pub(super) fn mean<const W: usize>(to: &mut Row<W>, rows: &[&Row<W>], range: Ran
 }
 
 #[inline(always)]
-fn mean_of_2(a: f32, b: f32) -> f32 {
+fn mean_of_2(a: Vec4, b: Vec4) -> Vec4 {
     0.5 * (a + b)
 }
 
 #[inline(always)]
-fn mean_of_4([a, b, c, d]: [f32; 4]) -> f32 {
+fn mean_of_4([a, b, c, d]: [Vec4; 4]) -> Vec4 {
     0.25 * ((a + b) + (c + d))
 }
 
 #[inline(always)]
-fn mean_of_8([a, b, c, d]: [f32; 4], [e, f, g, h]: [f32; 4]) -> f32 {
+fn mean_of_8([a, b, c, d]: [Vec4; 4], [e, f, g, h]: [Vec4; 4]) -> Vec4 {
     0.125 * (((a + b) + (c + d)) + ((e + f) + (g + h)))
 }
 
 /// The mean of four rows, as in [`mean`]: linear interpolation a quarter of a step along each axis from the first
 /// towards the others.
-#[inline]
+#[inline(always)]
 pub(super) fn interpolate<const W: usize>(
     to: &mut Row<W>,
     own: &Row<W>,
     [x, y, z]: [&Row<W>; 3],
     range: Range,
 ) {
-    write(to, |i| mean_of_4([own[i], x[i], y[i], z[i]]));
+    write(to, |i| mean_of_4([block(own, i), block(x, i), block(y, i), block(z, i)]));
     range.mend(to, &[own, x, y, z]);
 }
 
 /// Two such means at once that differ along the first axis alone.
-#[inline]
+#[inline(always)]
 pub(super) fn interpolate_both<const W: usize>(
     [low, high]: &mut [Row<W>; 2],
     own: &Row<W>,
@@ -117,41 +139,53 @@ pub(super) fn interpolate_both<const W: usize>(
     [y, z]: [&Row<W>; 2],
     range: Range,
 ) {
-    let mut block = |at: usize| {
-        for i in at..at + BLOCK {
-            low[i] = mean_of_4([own[i], x_low[i], y[i], z[i]]);
-        }
-        for i in at..at + BLOCK {
-            high[i] = mean_of_4([own[i], x_high[i], y[i], z[i]]);
-        }
-    };
-    (0..W / BLOCK).for_each(|n| block(n * BLOCK));
-    block(W - BLOCK);
+    write(low, |i| mean_of_4([block(own, i), block(x_low, i), block(y, i), block(z, i)]));
+    write(high, |i| mean_of_4([block(own, i), block(x_high, i), block(y, i), block(z, i)]));
     range.mend(low, &[own, x_low, y, z]);
     range.mend(high, &[own, x_high, y, z]);
 }
 
 /// A quarter of a value and three quarters of the mean of its six neighbours: the mean of eight rows, as in [`mean`].
-#[inline]
+#[inline(always)]
 pub(super) fn smooth<const W: usize>(to: &mut Row<W>, own: &Row<W>, neighbours: [&Row<W>; 6], range: Range) {
     let [a, b, c, d, e, f] = neighbours;
-    write(to, |i| mean_of_8([a[i], b[i], own[i], own[i]], [c[i], d[i], e[i], f[i]]));
+    write(to, |i| {
+        let twice = block(own, i) + block(own, i);
+        let pairs = ((block(a, i) + block(b, i)) + twice)
+            + ((block(c, i) + block(d, i)) + (block(e, i) + block(f, i)));
+        0.125 * pairs
+    });
     range.mend(to, &[own, own, a, b, c, d, e, f]);
 }
 
 /// Numbers that are computed at once.
 const BLOCK: usize = 4;
 
+/// The block of a row that begins with number `at`.
+#[inline(always)]
+fn block<const W: usize>(row: &Row<W>, at: usize) -> Vec4 {
+    let [x, y, z, w] = row[at..at + BLOCK] else { unreachable!("a block is that long") };
+    Vec4::new(x, y, z, w)
+}
+
 /// Computes the numbers of a row block by block; the last one reaches back where the blocks do not come out even.
 #[inline(always)]
-fn write<const W: usize>(to: &mut Row<W>, value: impl Fn(usize) -> f32) {
+fn write<const W: usize>(to: &mut Row<W>, value: impl Fn(usize) -> Vec4) {
     const { assert!(W >= BLOCK, "at least one block") };
-    let block = |at: usize| -> [f32; BLOCK] { std::array::from_fn(|i| value(at + i)) };
-    for n in 0..W / BLOCK {
-        to[n * BLOCK..][..BLOCK].copy_from_slice(&block(n * BLOCK));
+    let mut store = |at: usize, block: Vec4| to[at..at + BLOCK].copy_from_slice(&block.to_array());
+    // Two at once: nothing is stored while there is something to load.
+    let mut at = 0;
+    while at + 2 * BLOCK <= W {
+        let both = [value(at), value(at + BLOCK)];
+        store(at, both[0]);
+        store(at + BLOCK, both[1]);
+        at += 2 * BLOCK;
+    }
+    if at + BLOCK <= W {
+        store(at, value(at));
     }
     if !W.is_multiple_of(BLOCK) {
-        to[W - BLOCK..].copy_from_slice(&block(W - BLOCK));
+        store(W - BLOCK, value(W - BLOCK));
     }
 }
 

@@ -207,3 +207,19 @@ fn what_becomes_known_counts_though_its_value_stays() {
     assert_eq!(bits(filled.grid()), bits(&fill(&received, &FillOptions::default())));
     assert!(filled.grid().vectors()[4][0][0][0] < before);
 }
+
+#[test]
+fn vertices_that_exchange_their_values_change_what_is_smoothed_beside_them() {
+    // Both are in one block, whose mean stays: what depends on them alone is the smoothing of their neighbours.
+    let mut received = open_grid([8, 1, 1]);
+    for options in &ALL {
+        let mut filled = FilledGrid::new(received.clone(), *options);
+        for light in [[1.0, 3.0, 5.0], [3.0, 1.0, 5.0]] {
+            for (vertex, light) in [0, 1, 7].into_iter().zip(light) {
+                received.set(vertex, &[[[light; 3]; 3]; 6]);
+                filled.set(vertex, &[[[light; 3]; 3]; 6]);
+            }
+            assert_eq!(bits(filled.grid()), bits(&fill(&received, options)), "{options:?}");
+        }
+    }
+}
