@@ -157,8 +157,8 @@ impl<const W: usize> PushPull<W> {
     /// From now on leaves out all nodes on which no vertex depends that is missing now, if less than half as many are
     /// missing as when last narrowed. Vertices that are known never become missing.
     ///
-    /// A node that is pushed depends on its known neighbours, its parent and the parent's neighbours; a known one on
-    /// its children.
+    /// A node that is pushed depends on its parent, the parent's neighbours, and its own known neighbours, which are
+    /// children of these; a known node depends on its children.
     pub(super) fn narrow(&mut self) {
         let mut missing = self.levels[0].known.clone();
         missing.complement();
@@ -168,24 +168,19 @@ impl<const W: usize> PushPull<W> {
         self.missing = missing.count();
         self.forget();
         let levels = &self.pyramid.levels;
-        let empty: Vec<Marks> = levels.iter().map(|level| Marks::new(level.len())).collect();
-        let (mut pushed, mut wanted) = (empty.clone(), empty);
+        let mut pushed: Vec<Marks> = levels.iter().map(|level| Marks::new(level.len())).collect();
         // Nodes all of whose vertices are missing: only these can be without a known child, now or later.
         let mut unknown = missing;
         pushed[0].clone_from(&unknown);
         for (index, pair) in levels.windows(2).enumerate() {
             let [level, parents] = pair else { unreachable!("two levels") };
-            pushed[index].map_words(|group, word| word & unknown.word(group));
-            for node in pushed[index].iter() {
-                level.for_each_link(node, |other| wanted[index].insert(other));
-            }
             let (below, above) = pushed.split_at_mut(index + 1);
-            for node in below[index].iter().filter(|&node| level.parents[node] != NONE) {
+            let inner = |&node: &usize| unknown.contains(node) && level.parents[node] != NONE;
+            for node in below[index].iter().filter(inner) {
                 let parent = level.parents[node] as usize;
                 above[0].insert(parent);
                 parents.for_each_link(parent, |other| above[0].insert(other));
             }
-            wanted[index + 1].clone_from(&above[0]);
             unknown.complement();
             let known_parents =
                 unknown.iter().map(|node| level.parents[node]).filter(|&parent| parent != NONE);
@@ -194,6 +189,7 @@ impl<const W: usize> PushPull<W> {
             next.complement();
             unknown = next;
         }
+        let mut wanted = pushed.clone();
         for index in (1..levels.len()).rev() {
             let (below, above) = wanted.split_at_mut(index);
             let children = above[0].iter().flat_map(|node| levels[index].children(node));
