@@ -24,6 +24,37 @@ fn inside(vector: [f64; 3], axis: usize, positive: bool) -> Option<[f32; 3]> {
     Some(direction)
 }
 
+/// As [`inside`], of `N` vectors `[xyz][n]`, each step for all of them; the axis for a vector that has no direction.
+#[inline(always)]
+fn all_inside<const N: usize>(vectors: &[[f64; N]; 3], axis: usize, positive: bool) -> [[f32; N]; 3] {
+    let [xs, ys, zs] = vectors;
+    let side = if positive { 1.0 } else { -1.0 };
+    let greater = |one: f64, other: f64| if one > other { one } else { other };
+    let mut scaled = [[0.0; N]; 3];
+    let mut lengths = [0.0; N];
+    let mut lost = [false; N];
+    for n in 0..N {
+        let largest = greater(greater(xs[n].abs(), ys[n].abs()), zs[n].abs());
+        let [x, y, z] = [xs[n] / largest, ys[n] / largest, zs[n] / largest];
+        lengths[n] = x * x + y * y + z * z;
+        (scaled[0][n], scaled[1][n], scaled[2][n]) = (x, y, z);
+        // A coordinate that is not finite, or three that are 0, leave something that is not a number.
+        lost[n] = lengths[n].is_nan();
+    }
+    lengths.iter_mut().for_each(|length| *length = libm::sqrt(*length));
+    let mut directions = [[0.0; N]; 3];
+    for (i, (directions, scaled)) in directions.iter_mut().zip(&scaled).enumerate() {
+        let on_axis = if i == axis { side as f32 } else { 0.0 };
+        for n in 0..N {
+            let component = (scaled[n] / lengths[n]) as f32;
+            let least =
+                if i == axis && component * (side as f32) < LEAST { LEAST * side as f32 } else { component };
+            directions[n] = if lost[n] { on_axis } else { least };
+        }
+    }
+    directions
+}
+
 impl DirectionQuantiser for HalfDirection {
     type Code = [u16; 3];
 
@@ -34,6 +65,20 @@ impl DirectionQuantiser for HalfDirection {
 
     fn decode(code: &[u16; 3]) -> [f32; 3] {
         code.map(|bits| half::to_f32(u32::from(bits)))
+    }
+
+    fn encode_all<const N: usize>(
+        vectors: &[[f64; N]; 3],
+        axis: usize,
+        positive: bool,
+        codes: &mut [Self::Code; N],
+        along: &mut [f64; N],
+    ) {
+        let directions = all_inside(vectors, axis, positive);
+        for (n, (code, along)) in codes.iter_mut().zip(along).enumerate() {
+            *code = directions.each_ref().map(|component| half::from_f32(component[n]));
+            *along = f64::from(Self::decode(code)[axis]);
+        }
     }
 }
 
@@ -46,6 +91,20 @@ impl DirectionQuantiser for SingleDirection {
 
     fn decode(code: &[f32; 3]) -> [f32; 3] {
         *code
+    }
+
+    fn encode_all<const N: usize>(
+        vectors: &[[f64; N]; 3],
+        axis: usize,
+        positive: bool,
+        codes: &mut [Self::Code; N],
+        along: &mut [f64; N],
+    ) {
+        let directions = all_inside(vectors, axis, positive);
+        for (n, (code, along)) in codes.iter_mut().zip(along).enumerate() {
+            *code = directions.each_ref().map(|component| component[n]);
+            *along = f64::from(Self::decode(code)[axis]);
+        }
     }
 }
 

@@ -228,10 +228,10 @@ impl<'a, Q: Keep> Hemispheres<'a, Q> {
         let (colours, directions) = payload.split_at_mut(hemispheres * COLOUR);
         let colours = colours.as_chunks_mut::<COLOUR>().0.as_chunks_mut::<HEMISPHERES>().0;
         let directions = directions.as_chunks_mut::<DIRECTION>().0.as_chunks_mut::<HEMISPHERES>().0;
+        let mut gathered = [[Q::Kept::default(); HEMISPHERES]; GATHERED];
         let colours = colours.chunks_mut(GATHERED);
         let directions = directions.chunks_mut(GATHERED);
         for ((colours, directions), vertices) in colours.zip(directions).zip(vertices.chunks(GATHERED)) {
-            let mut gathered = [[Q::Kept::default(); HEMISPHERES]; GATHERED];
             gathered.iter_mut().zip(vertices).for_each(|(to, &vertex)| *to = self.kept[vertex as usize]);
             let places = colours.iter_mut().zip(directions).zip(vertices);
             for (((colours, directions), &vertex), kept) in places.zip(&gathered) {

@@ -1,4 +1,5 @@
 use super::*;
+use alloc::vec::Vec;
 use quickcheck::{TestResult, quickcheck};
 
 #[test]
@@ -49,5 +50,23 @@ quickcheck! {
             (f64::from(single[i]) - exact).abs() <= 2.0_f64.powi(-25) * 1.001
                 && (f64::from(half[i]) - exact).abs() <= 2.0_f64.powi(-12) * 1.001
         }))
+    }
+}
+
+quickcheck! {
+    fn many_at_once_give_what_each_gives_alone(vectors: Vec<(f32, f32, f32)>, hemisphere: u8) -> bool {
+        let (axis, positive) = (usize::from(hemisphere % 3), hemisphere >= 128);
+        // Numbers of every size, and some that are not finite; zeros where there are fewer than sixteen.
+        let vector = |n: usize| vectors.get(n).map_or([0.0; 3], |&(x, y, z)| [x, y, z].map(f64::from));
+        let columns: [[f64; 16]; 3] = core::array::from_fn(|i| core::array::from_fn(|n| vector(n)[i]));
+        let (mut singles, mut halves, mut along) = ([[0.0; 3]; 16], [[0; 3]; 16], [[0.0; 16]; 2]);
+        SingleDirection::encode_all(&columns, axis, positive, &mut singles, &mut along[0]);
+        HalfDirection::encode_all(&columns, axis, positive, &mut halves, &mut along[1]);
+        (0..16).all(|n| {
+            singles[n] == SingleDirection::encode_or_axis(vector(n), axis, positive)
+                && halves[n] == HalfDirection::encode_or_axis(vector(n), axis, positive)
+                && along[0][n] == f64::from(singles[n][axis])
+                && along[1][n] == f64::from(HalfDirection::decode(&halves[n])[axis])
+        })
     }
 }
