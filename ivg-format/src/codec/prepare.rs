@@ -2,6 +2,7 @@
 //! number of all gives the scale exponent; then records are written from it in any order.
 
 mod hemispheres;
+mod keep;
 
 use super::harmonics::{MEAN_BYTES, RATIOS};
 use crate::encoding::Encoding;
