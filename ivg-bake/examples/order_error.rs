@@ -20,16 +20,18 @@
 
 use std::path::{Path, PathBuf};
 
+use common::{AnyError, plan_of};
 use ivg_bake::{BakeOptions, Silent, bake};
 use ivg_format::{
     EncodeOptions, Event, GridSource, HemisphereVectors, Limits, Order, RecordId, decode_all, encode,
 };
 use ivg_grid::importance::{ImportanceOptions, bundles, near_surfaces};
 use ivg_grid::{FillOptions, IrradianceGrid, fill};
+use ivg_scene::Scene;
 use ivg_scene::import::{self, ImportOptions};
-use ivg_scene::{Effect, EffectPlan, Need, PlannedEffect, Scene};
 
-type AnyError = Box<dyn std::error::Error>;
+#[allow(dead_code, reason = "each example uses a part")]
+mod common;
 
 /// Shares of the bytes at which errors are printed.
 const SHARES: [f64; 6] = [0.0025, 0.01, 0.05, 0.25, 0.5, 0.75];
@@ -194,25 +196,6 @@ fn error(grid: &IrradianceGrid, near: &[bool], received: impl Iterator<Item = u6
     let mean = all[1] / each.len().max(1) as f64;
     let median = each.get(each.len() / 2).copied().unwrap_or(0.0);
     [(all[0] / all[1]).sqrt(), (close[0] / close[1]).sqrt(), (median / mean).sqrt()]
-}
-
-/// Diffuse indirect light, and textures and sky where the scene has them.
-fn plan_of(scene: &Scene) -> EffectPlan {
-    let planned = |effect, needed| PlannedEffect {
-        effect,
-        need: if needed { Need::Needed } else { Need::NotNeeded },
-        reason: String::new(),
-        cost: None,
-    };
-    EffectPlan {
-        effects: vec![
-            planned(Effect::DiffuseIndirect, true),
-            planned(Effect::Textures, !scene.textures.is_empty()),
-            planned(Effect::Sky, scene.sky.is_some()),
-        ],
-        max_bounces: 64,
-        energy_cutoff: 1e-3,
-    }
 }
 
 fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, AnyError> {

@@ -7,8 +7,8 @@ use ivg_format::Lattice;
 
 use crate::integrate::fibonacci_sphere;
 use crate::{
-    FillOptions, FilledGrid, HemisphereVectors, IrradianceGrid, Reconstruction, SpatialFilter, fill, harmonics,
-    reconstruct,
+    FillOptions, FilledGrid, HemisphereVectors, IrradianceGrid, Reconstruction, SpatialFilter, fill,
+    harmonics, reconstruct,
 };
 
 /// A hard case.
