@@ -54,13 +54,13 @@ impl Points {
     fn parse(text: &[u8]) -> Result<Self, String> {
         let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text);
-        let header = reader.headers().map_err(|error| error.to_string())?.clone();
-        let places = places(&header)?;
+        let header = reader.headers().map_err(|error| refused(text, &error))?.clone();
+        let places = places(&header).map_err(|what| format!("line {}: {what}", line(text, None)))?;
         let mut rows = Vec::new();
-        for (row, record) in (2..).zip(reader.records()) {
-            let record = record.map_err(|error| error.to_string())?;
-            let line = record.position().map_or(row, csv::Position::line);
-            let point = point(&record, &places, line)?;
+        for record in reader.records() {
+            let record = record.map_err(|error| refused(text, &error))?;
+            let point = point(&record, &places)
+                .map_err(|what| format!("line {}, {what}", line(text, record.position())))?;
             rows.push((record, point));
         }
         Ok(Self { header, rows })
@@ -84,13 +84,37 @@ impl Points {
     }
 }
 
+/// What the CSV reader refuses, by its line.
+fn refused(text: &[u8], error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            format!("line {}: {len} columns, the header has {expected_len}", line(text, pos.as_ref()))
+        }
+        csv::ErrorKind::Utf8 { pos, .. } => {
+            format!("line {}: this is not UTF-8 text", line(text, pos.as_ref()))
+        }
+        _ => error.to_string(),
+    }
+}
+
+/// The line on which the record at this position begins, the first record without one. The reader's own count stops before
+/// the line ends that it skips, so that it is short after empty lines and LF that follows CR.
+fn line(text: &[u8], position: Option<&csv::Position>) -> usize {
+    let reached = position.map_or(0, |position| position.byte() as usize).min(text.len());
+    let skipped = text[reached..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+    let before = &text[..reached + skipped];
+    // CR and LF are one end together.
+    let ends = |&i: &usize| before[i] == b'\n' || (before[i] == b'\r' && before.get(i + 1) != Some(&b'\n'));
+    1 + (0..before.len()).filter(ends).count()
+}
+
 /// Where the columns are.
 fn places(header: &StringRecord) -> Result<[usize; 6], String> {
     let count = |name: &str| header.iter().filter(|&cell| cell == name).count();
     let missing: Vec<&str> = COLUMNS.into_iter().filter(|name| count(name) == 0).collect();
     if !missing.is_empty() {
         return Err(format!(
-            "line 1: the header must name the columns x,y,z,nx,ny,nz; {} missing",
+            "the header must name the columns x,y,z,nx,ny,nz; {} missing",
             match &missing[..] {
                 [one] => format!("{one} is"),
                 more => format!("{} are", more.join(",")),
@@ -98,16 +122,16 @@ fn places(header: &StringRecord) -> Result<[usize; 6], String> {
         ));
     }
     if let Some(twice) = COLUMNS.into_iter().find(|name| count(name) > 1) {
-        return Err(format!("line 1: there are two columns {twice}; rename one"));
+        return Err(format!("there are two columns {twice}; rename one"));
     }
     if let Some(taken) = RESULTS.into_iter().find(|name| count(name) > 0) {
-        return Err(format!("line 1: the output gets a column {taken}, but the input has one; rename that"));
+        return Err(format!("the output gets a column {taken}, but the input has one; rename that"));
     }
     // Each is there exactly once.
     Ok(COLUMNS.map(|name| header.iter().position(|cell| cell == name).unwrap_or_default()))
 }
 
-fn point(record: &StringRecord, places: &[usize; 6], line: u64) -> Result<Point, String> {
+fn point(record: &StringRecord, places: &[usize; 6]) -> Result<Point, String> {
     let mut values = [0.0; 6];
     for ((value, name), &place) in values.iter_mut().zip(COLUMNS).zip(places) {
         let cell = &record[place];
@@ -115,15 +139,13 @@ fn point(record: &StringRecord, places: &[usize; 6], line: u64) -> Result<Point,
             .parse()
             .ok()
             .filter(|value: &f64| value.is_finite())
-            .ok_or_else(|| format!("line {line}, column {name}: '{cell}' is not a finite number"))?;
+            .ok_or_else(|| format!("column {name}: '{cell}' is not a finite number"))?;
     }
     let [position, normal] = [&values[..3], &values[3..]].map(DVec3::from_slice);
     // Scaled first, so that no square leaves the range of f64.
     let scaled = normal / normal.abs().max_element();
     if !scaled.is_finite() {
-        return Err(format!(
-            "line {line}, columns nx,ny,nz: the normal is zero; a surface needs a direction"
-        ));
+        return Err("columns nx,ny,nz: the normal is zero; a surface needs a direction".to_owned());
     }
     Ok(Point { position, normal: scaled.normalize().as_vec3() })
 }

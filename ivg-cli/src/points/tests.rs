@@ -28,5 +28,26 @@ fn what_is_wrong_is_named_by_line_and_column() {
     refused(&format!("{header}\n0,0,0,0,1,0\n0,one,0,0,1,0\n"), &["line 3", "column y", "'one'"]);
     refused(&format!("{header}\n0,0,0,0,inf,0\n"), &["line 2", "column ny", "'inf'"]);
     refused(&format!("{header}\n0,0,0,0,-0,0\n"), &["line 2", "nx,ny,nz", "zero"]);
-    refused(&format!("{header}\n0,0,0,0,1\n"), &["line: 2"]);
+    refused(&format!("{header}\n0,0,0,0,1\n"), &["line 2: 5 columns, the header has 6"]);
+    let message = Points::parse(b"x,y,z,nx,ny,nz\n1,1,1,0,1,0\n\xff,1,1,0,1,0\n").unwrap_err();
+    assert_eq!(message, "line 3: this is not UTF-8 text");
+}
+
+#[test]
+fn lines_are_counted_as_an_editor_does() {
+    let (header, good, bad, short) = ("x,y,z,nx,ny,nz", "1,1,1,0,1,0", "q,1,1,0,1,0", "1,1,1,0,1");
+    for end in ["\n", "\r\n", "\r"] {
+        for last in [end, ""] {
+            for (row, what) in [(bad, "line 3, column x"), (short, "line 3: 5 columns")] {
+                refused(&format!("{header}{end}{good}{end}{row}{last}"), &[what]);
+            }
+            refused(
+                &format!("{end}{header}{end}{end}{end}{good}{end}{end}{bad}{last}"),
+                &["line 7, column x"],
+            );
+        }
+        refused(&format!("{end}{end}x,y{end}"), &["line 3: the header"]);
+        // A cell in quotes may hold line ends.
+        refused(&format!("{header},name{end}{good},\"a{end}b\"{end}{bad},c{end}"), &["line 4, column x"]);
+    }
 }
