@@ -1,6 +1,6 @@
 //! Output files that are either complete or not there.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
@@ -80,9 +80,24 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Prints to stdout; a reader that has gone away is not an error worth a message.
-pub(crate) fn print(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
+/// Prints to stdout.
+///
+/// # Errors
+///
+/// What is printed cannot be written, as to a full disk.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    printed(stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()))
+}
+
+/// What became of a write to stdout; a reader that has gone away is not an error worth a message.
+pub(crate) fn printed(result: std::io::Result<()>) -> Result<(), Failure> {
+    match result {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::new(format_args!("stdout: {error}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Text from a file or a scene as it may be shown on a terminal: control characters are written as escapes

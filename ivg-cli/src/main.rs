@@ -30,17 +30,17 @@ use crate::args::{Arguments, Command};
 use crate::failure::Failure;
 
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
+    let result = match Arguments::try_parse() {
+        Ok(arguments) => run(arguments.command),
         // Help and version are asked for; everything else is an error, and errors are one line.
-        Err(error) if !error.use_stderr() => error.exit(),
+        Err(error) if !error.use_stderr() => files::printed(error.print()).map(|()| ExitCode::SUCCESS),
         Err(error) => {
             let failure = Failure::usage(first_paragraph(&error.to_string()));
             eprintln!("ivg: {failure} (see ivg --help)");
             return failure.exit_code();
         }
     };
-    match run(arguments.command) {
+    match result {
         Ok(code) => code,
         Err(failure) => {
             eprintln!("ivg: {failure}");

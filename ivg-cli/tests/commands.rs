@@ -141,6 +141,33 @@ fn a_failure_is_one_line_and_leaves_no_file() {
     assert_eq!(output.status.code(), Some(2), "a usage error");
 }
 
+/// Linux's device that is always full stands for a disk that is.
+#[cfg(target_os = "linux")]
+#[test]
+fn output_that_cannot_be_written_is_an_error() {
+    let place = Workplace::with_room();
+    place.ok(&[&["bake", "room.obj", "-o", "light.ivg"][..], &SMALL].concat());
+    place.write("points.csv", b"x,y,z,nx,ny,nz\n0.5,0.4,0.5,0,1,0\n");
+    let commands: [&[&str]; 5] = [
+        &["sample", "light.ivg", "--points", "points.csv"],
+        &["info", "light.ivg"],
+        &["check", "light.ivg", "--json"],
+        &["extract", "light.ivg", "-o", "light.npy"],
+        &["--help"],
+    ];
+    for arguments in commands {
+        let output = place.run_to(arguments, fs::File::create("/dev/full").expect("the device").into());
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        let message = text(&output.stderr);
+        assert!(message.starts_with("ivg: stdout: ") && message.lines().count() == 1, "{message}");
+        // A reader that has seen enough is none.
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let output = place.run_to(arguments, writer.into());
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+    }
+}
+
 #[test]
 fn plan_names_what_a_scene_needs() {
     let place = Workplace::with_room();

@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
             "lights": stats.lights.iter().map(|light| &light.name).collect::<Vec<_>>(),
             "seconds": seconds,
         });
-        files::print(&format!("{report}\n"));
+        files::print(&format!("{report}\n"))?;
         return Ok(ExitCode::SUCCESS);
     }
     let [nx, ny, nz] = lattice.dims;
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
         stats.flights,
         stats.flights as f64 / seconds / 1e6,
         baked.plan.max_bounces,
-    ));
+    ))?;
     let sum = |watts: glam::DVec3| watts.element_sum();
     let emitted = sum(stats.emitted);
     if emitted > 0.0 {
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
             100.0 * sum(stats.absorbed) / emitted,
             100.0 * sum(stats.escaped) / emitted,
             100.0 * sum(stats.cut) / emitted,
-        ));
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }

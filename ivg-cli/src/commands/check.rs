@@ -28,19 +28,19 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
             "message": result.as_ref().err().map(ToString::to_string),
             "warnings": result.as_ref().ok().map(|found| &found.warnings),
         });
-        files::print(&format!("{report}\n"));
+        files::print(&format!("{report}\n"))?;
     } else {
         let name = arguments.file.display();
         match &result {
-            Err(error) => files::print(&format!("{name}: {verdict}: {error} [{}]\n", error.code())),
+            Err(error) => files::print(&format!("{name}: {verdict}: {error} [{}]\n", error.code()))?,
             Ok(found) => {
                 files::print(&format!(
                     "{name}: {verdict}: {} bytes, {} parts, every checksum and reader rule holds\n",
                     bytes.len(),
                     found.parts,
-                ));
+                ))?;
                 for warning in &found.warnings {
-                    files::print(&format!("{name}: warning: {warning}\n"));
+                    files::print(&format!("{name}: warning: {warning}\n"))?;
                 }
             }
         }

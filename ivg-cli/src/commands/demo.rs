@@ -100,8 +100,8 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<ExitCode, Failure> {
         elapsed: start.elapsed(),
     })?;
     files::write(&out.join("demo.json"), report.json().as_bytes())?;
-    files::print(&report.text());
-    files::print(&format!("\npictures and figures in {}\n", out.display()));
+    files::print(&report.text())?;
+    files::print(&format!("\npictures and figures in {}\n", out.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -48,7 +48,7 @@ fn grid(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
         arguments.out.display(),
         shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(" x "),
         grid.vertex_count(),
-    ));
+    ))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -125,6 +125,6 @@ fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
         range.end(),
         mesh.positions.len(),
         mesh.triangles.len(),
-    ));
+    ))?;
     Ok(ExitCode::SUCCESS)
 }

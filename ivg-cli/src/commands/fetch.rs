@@ -11,10 +11,17 @@ use crate::{files, table};
 pub(crate) fn run(arguments: &FetchArguments) -> Result<ExitCode, Failure> {
     let options = FetchOptions::with_schedule(arguments.schedule.0);
     let as_json = arguments.json;
-    let mut log = |event: &Event| files::print(&if as_json { json_line(event) } else { text_line(event) });
+    let mut printed = Ok(());
+    let mut log = |event: &Event| {
+        // After the first line that cannot be written there is no use in more.
+        if printed.is_ok() {
+            printed = files::print(&if as_json { json_line(event) } else { text_line(event) });
+        }
+    };
     let mut session = Session::open(&arguments.url, options, &mut log).map_err(Failure::new)?;
     let goal = Goal { geometry: arguments.geometry, light: arguments.light };
     let progress = session.fetch_until(goal, &mut log).map_err(Failure::new)?;
+    printed?;
     let seconds = progress.elapsed.as_secs_f64();
     if as_json {
         let figures = json!({
@@ -25,7 +32,7 @@ pub(crate) fn run(arguments: &FetchArguments) -> Result<ExitCode, Failure> {
             "light": progress.light,
             "seconds": seconds,
         });
-        files::print(&format!("{figures}\n"));
+        files::print(&format!("{figures}\n"))?;
     } else {
         files::print(&format!(
             "{seconds:.3} s: scene {}, geometry {} ({:.1} % of the vertices), light {} ({:.1} % of the vertices)\n",
@@ -34,7 +41,7 @@ pub(crate) fn run(arguments: &FetchArguments) -> Result<ExitCode, Failure> {
             100.0 * progress.geometry,
             table::bytes(progress.light_bytes),
             100.0 * progress.light,
-        ));
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -38,11 +38,11 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
             .map(|part| json!({ "part": part.what, "offset": part.offset, "bytes": part.bytes }))
             .collect();
         report.insert("parts".to_owned(), parts.into());
-        files::print(&format!("{}\n", Value::from(report)));
+        files::print(&format!("{}\n", Value::from(report)))?;
         return Ok(ExitCode::SUCCESS);
     }
     for (name, value) in &description.fields {
-        files::print(&format!("{name:20} {}\n", files::shown(&plain(value))));
+        files::print(&format!("{name:20} {}\n", files::shown(&plain(value))))?;
     }
     let mut rows = vec![["part", "offset", "bytes"].map(str::to_owned).to_vec()];
     rows.extend(
@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
             .iter()
             .map(|part| vec![part.what.clone(), part.offset.to_string(), part.bytes.to_string()]),
     );
-    files::print(&format!("\n{}", table::layout(&rows, &[1, 2])));
+    files::print(&format!("\n{}", table::layout(&rows, &[1, 2])))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
             "findings": findings(&report).collect::<std::collections::BTreeMap<_, _>>(),
             "seconds": { "read": read, "order": order, "encode": encode },
         });
-        files::print(&format!("{figures}\n"));
+        files::print(&format!("{figures}\n"))?;
         return Ok(ExitCode::SUCCESS);
     }
     files::print(&format!(
@@ -72,9 +72,9 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
         table::bytes(file.len() as u64),
         100.0 * (file.len() as f64 / plain as f64 - 1.0),
         1e6 * order / vertices.max(1) as f64,
-    ));
+    ))?;
     for (what, count) in findings(&report) {
-        files::print(&format!("{count:>9}  {what}\n"));
+        files::print(&format!("{count:>9}  {what}\n"))?;
     }
     if report.precision_lost() {
         eprintln!(

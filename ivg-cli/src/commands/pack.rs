@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
             "plain_mesh_bytes": meshes.plain_bytes,
             "seconds": { "bake": baked.elapsed.as_secs_f64(), "order": meshes.seconds },
         });
-        files::print(&format!("{figures}\n"));
+        files::print(&format!("{figures}\n"))?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut rows = vec![vec!["file".to_owned(), "bytes".to_owned()]];
@@ -41,6 +41,6 @@ pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
         "{}\nserve it with: ivg serve {}\n",
         table::layout(&rows, &[1]),
         directory.display()
-    ));
+    ))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
             "unsupported": loaded.scene.unsupported.iter()
                 .map(|item| json!({ "object": item.object, "what": item.what })).collect::<Vec<_>>(),
         });
-        files::print(&format!("{report}\n"));
+        files::print(&format!("{report}\n"))?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut rows = vec![["effect", "", "CPU s", "energy", "why"].map(str::to_owned).to_vec()];
@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
         loaded.scene.name,
         loaded.flat.triangles.len(),
         table::layout(&rows, &[2, 3])
-    ));
+    ))?;
     match pilot {
         Some(pilot) => files::print(&format!(
             "\nUp to {} bounces: the rest is below {} % of the light energy.\nCosts are for {} photons on a 16x16x16 grid, measured with {} photons.\n",
@@ -57,11 +57,11 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
             100.0 * plan.energy_cutoff,
             arguments.photons,
             pilot.photons,
-        )),
+        ))?,
         None => {
             files::print(
                 "\nThe scene has no light; add one with --lights FILE.toml. No cost was measured.\n",
-            );
+            )?;
         }
     }
     for item in &loaded.scene.unsupported {
@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
             "not supported: {}: {}\n",
             files::shown(&item.object),
             files::shown(&item.what)
-        ));
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }

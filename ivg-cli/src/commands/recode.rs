@@ -27,6 +27,7 @@ pub(crate) fn run(arguments: &RecodeArguments) -> Result<ExitCode, Failure> {
         vertices_per_slice: arguments.per_slice.unwrap_or(header.vertices_per_slice),
         seed: arguments.seed.unwrap_or(header.seed),
         units: header.units,
+        ..EncodeOptions::default()
     };
     let converted = converted(path, &grid, &header, &options)?;
     let source_grid = converted.as_ref().unwrap_or(&grid);
@@ -51,7 +52,7 @@ pub(crate) fn run(arguments: &RecodeArguments) -> Result<ExitCode, Failure> {
     let after = Stored { grid: &after, encoding: written.encoding };
     let loss = Loss::measure(before, source_grid, after);
     files::write(&arguments.out, &file)?;
-    report(arguments, (&header, bytes.len()), (&written, file.len()), &loss, converted.is_some());
+    report(arguments, (&header, bytes.len()), (&written, file.len()), &loss, converted.is_some())?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -140,7 +141,7 @@ fn report(
     to: (&Header, usize),
     loss: &Loss,
     converted: bool,
-) {
+) -> Result<(), Failure> {
     let lossy = converted || !loss.is_none();
     if arguments.json {
         let mut report = described(to);
@@ -151,7 +152,7 @@ fn report(
         report["quantity_changed"] = converted.into();
         report["values_relative_rmse"] = loss.values.into();
         report["irradiance_relative_rmse"] = loss.irradiance.into();
-        files::print(&format!("{report}\n"));
+        files::print(&format!("{report}\n"))?;
     } else {
         files::print(&format!(
             "{}: {} vertices, {} (from {})\n",
@@ -159,7 +160,7 @@ fn report(
             to.0.lattice.vertex_count(),
             phrase(to),
             phrase(from)
-        ));
+        ))?;
     }
     if lossy {
         let cannot = if converted {
@@ -177,6 +178,7 @@ fn report(
             percent(loss.irradiance),
         );
     }
+    Ok(())
 }
 
 fn percent(share: f64) -> String {

@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
         image.width(),
         image.height(),
         start.elapsed().as_secs_f64(),
-    ));
+    ))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
     let table = points.with_results(&results).map_err(Failure::new)?;
     match &arguments.out {
         Some(out) => files::write(out, &table)?,
-        None => files::print(&String::from_utf8_lossy(&table)),
+        None => files::print(&String::from_utf8_lossy(&table))?,
     }
     Ok(ExitCode::SUCCESS)
 }

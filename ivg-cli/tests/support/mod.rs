@@ -87,6 +87,13 @@ impl Workplace {
         child.wait_with_output().expect("the command ends")
     }
 
+    /// Runs the command to its end with its stdout at `stdout`.
+    pub(crate) fn run_to(&self, arguments: &[&str], stdout: Stdio) -> Output {
+        let mut command = self.command(arguments);
+        command.stdout(stdout).stderr(Stdio::piped());
+        command.spawn().and_then(Child::wait_with_output).expect("the command ends")
+    }
+
     /// Runs the command, which must succeed; gives what it printed.
     pub(crate) fn ok(&self, arguments: &[&str]) -> Vec<u8> {
         let output = self.run(arguments);
