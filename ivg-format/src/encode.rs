@@ -3,7 +3,7 @@
 mod lists;
 mod record;
 
-use crate::codec::{Fault, Prepared};
+use crate::codec::{Fault, Prepared, Scale};
 use crate::directory::{DIRECTORY, Directory};
 use crate::encoding::{Encoding, Order, Units};
 use crate::header::{Header, RecordId, VALIDITY_BLOCK};
@@ -56,7 +56,7 @@ impl<'a> GridSource<'a> {
 /// How to write it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EncodeOptions {
-    /// How irradiance vectors are stored.
+    /// How the values of a vertex are stored.
     pub encoding: Encoding,
     /// In which order bundles take the vertices.
     pub order: Order,
@@ -67,10 +67,14 @@ pub struct EncodeOptions {
     pub seed: u64,
     /// What the numbers measure.
     pub units: Units,
+    /// Powers of two by which light may get brighter in records that replace those written now ([`encode_record`]): 3 for
+    /// eight times as bright. The scale of a file is fixed when it is first written (IVG-UPD-01). Room costs precision only
+    /// where light is darker than a 2³⁰⁻ⁿth of the brightest, for room n, and none in binary32, which is not scaled.
+    pub headroom: u8,
 }
 
 impl EncodeOptions {
-    /// The defaults: `packed-oct24`, 64 vertices per slice, seed 0, W/m².
+    /// The defaults: `packed-oct24`, 64 vertices per slice, seed 0, W/m², no headroom.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -79,6 +83,7 @@ impl EncodeOptions {
             vertices_per_slice: 64,
             seed: 0,
             units: Units::Radiometric,
+            headroom: 0,
         }
     }
 }
@@ -230,8 +235,9 @@ pub enum EncodeError {
 /// [`EncodeError`] names what cannot be written and where.
 pub fn encode(source: &GridSource<'_>, options: &EncodeOptions) -> Result<Vec<u8>, EncodeError> {
     check_source(source)?;
-    let prepared = Prepared::new(source.values, options.encoding, None)
-        .map_err(|fault| named(fault, source, options.encoding, |index| index as u64))?;
+    let prepared =
+        Prepared::new(source.values, options.encoding, Scale::Smallest { headroom: options.headroom })
+            .map_err(|fault| named(fault, source, options.encoding, |index| index as u64))?;
     let header = Header { scale_exponent: prepared.scale_exponent(), ..unplaced(source, options)? };
     let lists = Lists::of(source, options.order, header.largest_bundle())?;
     let directory = lists.directory(options)?;
@@ -486,7 +492,9 @@ impl fmt::Display for EncodeError {
             Self::NeverReplaced { id } => {
                 write!(f, "record {:#x} is never replaced; write a new file", id.stored())
             }
-            Self::BundlesMissing => f.write_str("the order explicit needs the vertices of each bundle"),
+            Self::BundlesMissing => {
+                f.write_str("the order explicit needs the vertices of each bundle: set GridSource::bundles")
+            }
             Self::BundlesUnwanted { order } => {
                 write!(f, "bundles are given, but the order {} makes its own; use explicit", order.name())
             }

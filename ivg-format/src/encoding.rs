@@ -128,10 +128,10 @@ impl Encoding {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Units {
-    /// Irradiance vectors in W/m².
+    /// Irradiance vectors in W/m², radiance harmonics in W/(m² sr).
     #[default]
     Radiometric,
-    /// Irradiance vectors in lux.
+    /// Irradiance vectors in lux, radiance harmonics in cd/m².
     Photometric,
 }
 

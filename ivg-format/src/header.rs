@@ -77,15 +77,16 @@ pub struct Header {
     pub file_bytes: u64,
     /// Where the vertices are.
     pub lattice: Lattice,
-    /// How the irradiance vectors of a vertex are stored.
+    /// How the values of a vertex are stored.
     pub encoding: Encoding,
     /// In which order bundles take the vertices.
     pub order: Order,
     /// Stored values are multiplied by 2 to this power; −125 to 112 (IVG-HDR-04).
     pub scale_exponent: i16,
-    /// Vertices that a bundle takes from each slice; at least 1.
+    /// Vertices that a bundle takes from each slice, at least 1; in the orders without slices a bundle has this many times
+    /// the vertices of the longest axis: so many in `octree`, at most so many in `explicit`.
     pub vertices_per_slice: u32,
-    /// Seed of the permutations in the slices.
+    /// Seed of the order; without a meaning in `explicit`.
     pub seed: u64,
     /// Number of bundles.
     pub bundle_count: u32,

@@ -73,6 +73,32 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A server may refine its light: a record that is written again with a higher generation replaces the one in its place,
+//! and readers that hold both keep the newer, in whatever order they came ([`Generations`]; `ivg_grid` asks it):
+//!
+//! ```
+//! use ivg_format::{
+//!     Arrival, EncodeOptions, Generations, GridSource, Header, Lattice, Limits, RecordId, Step, encode, encode_record,
+//!     replace_record,
+//! };
+//!
+//! let lattice = Lattice::new([3, 3, 3], [0.0; 3], [1.0; 3])?;
+//! let light = |brightness: f32| vec![[[[brightness; 3]; 3]; 6]; 27];
+//! let (first, refined) = (light(1.0), light(2.5));
+//! // The scale of the numbers stays as it is first written: leave room for light that is up to four times as bright.
+//! let options = EncodeOptions { headroom: 2, ..EncodeOptions::default() };
+//! let mut file = encode(&GridSource::new(lattice, &first), &options)?;
+//!
+//! let Step::Consumed(_, header) = Header::read(&file, &Limits::default())? else { unreachable!("a whole file") };
+//! let record = encode_record(&GridSource::new(lattice, &refined), &header, RecordId::Bundle(1), 1)?;
+//! assert_eq!(replace_record(&mut file, &record, &Limits::default())?, Arrival::Newer);
+//!
+//! let mut held = Generations::new();
+//! assert_eq!(held.admit(header.content_id, RecordId::Bundle(1), 1), Arrival::New);
+//! assert_eq!(held.admit(header.content_id, RecordId::Bundle(1), 0), Arrival::Stale);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Guarantees: reading never panics, whatever the bytes; [`Decoder`] allocates nothing, [`BufferedDecoder`]
 //! nothing but the bytes of the record it waits for; any split of the bytes gives the same events and the same
 //! error. [`decode_record`] reads one record by its range, [`Header::record_range`] says where it lies.

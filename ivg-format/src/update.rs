@@ -15,7 +15,7 @@ pub enum Arrival {
     New,
     /// A higher generation: it replaces all that the record brought before.
     Newer,
-    /// The same content again: taking it changes nothing.
+    /// The same generation again, which is the same content (IVG-UPD-02): it changes nothing.
     Same,
     /// A lower generation: it is ignored.
     Stale,
@@ -73,6 +73,12 @@ impl Generations {
             self.held.insert(id, generation);
         }
         arrival
+    }
+
+    /// The file whose records are held, once one was admitted.
+    #[must_use]
+    pub const fn file(&self) -> Option<ContentId> {
+        self.file
     }
 
     /// The generation held of a record, if any.

@@ -14,25 +14,25 @@ impl IrradianceGrid {
     /// edges. Other events bring nothing; a header is only compared.
     ///
     /// Events may come in any order, as records fetched one by one do. A record that comes again with a higher generation
-    /// replaces what it brought before, one with a lower is ignored (`spec/ivg.md`, "Updates").
+    /// replaces what it brought before, one with the same or a lower changes nothing (`spec/ivg.md`, "Updates").
     ///
     /// # Errors
     ///
-    /// [`GridError::OtherLattice`] and [`GridError::OtherQuantity`] if the event belongs to another file. The grid is as
-    /// before then.
+    /// [`GridError::OtherLattice`], [`GridError::OtherQuantity`] and, once a record of one file was accepted,
+    /// [`GridError::OtherFile`] if the event belongs to another file. The grid is as before then.
     pub fn accept(&mut self, event: &Event<'_>) -> Result<(), GridError> {
         match event {
             Event::Header(header) => self.check_lattice(header),
             Event::Corners(bundle) | Event::Bundle(bundle) => {
                 self.check_lattice(bundle.header())?;
-                if !self.is_stale(bundle.header().content_id, bundle.id(), bundle.generation()) {
+                if self.admits(bundle.header().content_id, bundle.id(), bundle.generation()) {
                     self.receive(bundle);
                 }
                 Ok(())
             }
             Event::Validity(block) => {
                 self.check_lattice(block.header())?;
-                if self.is_stale(block.header().content_id, block.id(), block.generation()) {
+                if !self.admits(block.header().content_id, block.id(), block.generation()) {
                     return Ok(());
                 }
                 let first = address(block.first_vertex());
@@ -112,7 +112,8 @@ impl IrradianceGrid {
         whole.unwrap_or(Err(GridError::OtherLattice))
     }
 
-    /// The grid as something to encode, without lights and metadata. Without a validity section where every vertex is
+    /// The grid as something to encode, without lights and metadata, which a file that was read has in its chunks, and
+    /// without its units: those go into `EncodeOptions::units`. Without a validity section where every vertex is
     /// free and no edge is blocked.
     ///
     /// Vertices without a value are written as darkness: a file has no missing ones.
@@ -131,6 +132,9 @@ impl IrradianceGrid {
         }
         if header.encoding.quantity() != self.quantity() {
             return Err(GridError::OtherQuantity);
+        }
+        if self.is_of_another_file(header.content_id) {
+            return Err(GridError::OtherFile);
         }
         Ok(())
     }

@@ -26,6 +26,8 @@ pub enum GridError {
     OtherLattice,
     /// A record holds another quantity than the grid.
     OtherQuantity,
+    /// A record belongs to another file than those accepted before (another content id).
+    OtherFile,
     /// An array does not have one element a vertex.
     Length {
         /// Name of the array.
@@ -54,6 +56,9 @@ impl fmt::Display for GridError {
             ),
             Self::OtherQuantity => f.write_str(
                 "the record holds another quantity than the grid; start again with that file's header",
+            ),
+            Self::OtherFile => f.write_str(
+                "the record belongs to another file than those before it; start again with that file's header",
             ),
             Self::Length { array, found, vertices } => {
                 write!(f, "the array of {array} has {found} elements; the lattice has {vertices} vertices")

@@ -140,7 +140,8 @@ impl IrradianceGrid {
         self.values.len()
     }
 
-    /// Number of vertices received so far.
+    /// Number of vertices received so far. A whole file of the order `explicit` may bring fewer than there are: vertices
+    /// inside geometry are in no bundle (IVG-EXP-05). That a file is whole is what `Event::End` says.
     #[must_use]
     pub fn received_count(&self) -> usize {
         self.received.count
@@ -304,9 +305,15 @@ impl IrradianceGrid {
             && (self.filled || self.received.count == self.vertex_count())
     }
 
-    /// Whether a record is older than the one of the same id that was accepted before; if not, it is accepted from now on.
-    pub(crate) fn is_stale(&mut self, file: ContentId, id: RecordId, generation: u32) -> bool {
-        self.accepted.0.admit(file, id, generation) == Arrival::Stale
+    /// Whether a record brings anything: it is the first of its id, or newer than the one accepted before, and is accepted
+    /// from now on.
+    pub(crate) fn admits(&mut self, file: ContentId, id: RecordId, generation: u32) -> bool {
+        matches!(self.accepted.0.admit(file, id, generation), Arrival::New | Arrival::Newer)
+    }
+
+    /// Whether records of another file than this have been accepted.
+    pub(crate) fn is_of_another_file(&self, file: ContentId) -> bool {
+        self.accepted.0.file().is_some_and(|accepted| accepted != file)
     }
 
     /// The numbers of all vertices, for whoever gives every vertex a value.

@@ -1,9 +1,9 @@
 //! The mathematics on a dense irradiance vector grid: reconstruction, interpolation, push-pull, metrics.
 //!
 //! An [`IrradianceGrid`] holds six irradiance vectors a vertex (one for each hemisphere +x −x +y −y +z −z, three
-//! colour channels each) on an [`ivg_format::Lattice`], and knows three different things about every vertex:
-//! whether it was *received*, whether light reaches it (*validity*), and whether geometry cuts the way to its
-//! neighbours (*blocked edges*).
+//! colour channels each), or nine spherical harmonics of the radiance for each channel, on an [`ivg_format::Lattice`].
+//! It knows three different things about every vertex: whether it was *received*, whether light reaches it (*validity*),
+//! and whether geometry cuts the way to its neighbours (*blocked edges*).
 //!
 //! ```text
 //! decoder events ─ accept ─► IrradianceGrid ─ fill ─► every vertex valued ─ irradiance(p, n) ─► W/m²
@@ -32,10 +32,49 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Reading a stream, the grid is made from the header, takes every event, and can be looked at whenever one likes;
+//! [`FilledGrid`] computes only what the last events changed:
+//!
+//! ```
+//! use glam::{DVec3, Vec3};
+//! use ivg_format::{BufferedDecoder, Event, Limits};
+//! use ivg_grid::{FillOptions, FilledGrid, IrradianceGrid, Reconstruction, SpatialFilter};
+//! # use ivg_format::{EncodeOptions, GridSource, Lattice, encode};
+//! # let lattice = Lattice::new([5, 5, 5], [0.0; 3], [1.0; 3])?;
+//! # let file = encode(&GridSource::new(lattice, &vec![[[[1.0; 3]; 3]; 6]; 125]), &EncodeOptions::default())?;
+//!
+//! // A dense grid is the application's to allow: here at most 2²⁰ vertices.
+//! let limits = Limits { vertices: 1 << 20, ..Limits::default() };
+//! let mut decoder = BufferedDecoder::new(limits);
+//! let mut light: Option<FilledGrid> = None;
+//! let mut failed = None;
+//! for piece in file.chunks(1000) {
+//!     decoder.feed(piece, |event| {
+//!         if let Event::Header(header) = &event {
+//!             match IrradianceGrid::with_limit(header.lattice, header.encoding.quantity(), limits.vertices) {
+//!                 Ok(grid) => light = Some(FilledGrid::new(grid, FillOptions::default())),
+//!                 Err(error) => failed = Some(error),
+//!             }
+//!         } else if let Some(Err(error)) = light.as_mut().map(|light| light.accept(&event)) {
+//!             failed = Some(error);
+//!         }
+//!     })?;
+//!     // Look at any moment: vertices that have not arrived are filled in.
+//!     if let (Some(light), Some(header)) = (&mut light, decoder.header()) {
+//!         let formula = Reconstruction::for_encoding(header.encoding);
+//!         let (p, n) = (DVec3::splat(0.3), Vec3::Y);
+//!         println!("{}", light.grid().irradiance(p, n, formula, SpatialFilter::Trilinear));
+//!     }
+//! }
+//! decoder.finish()?;
+//! assert!(failed.is_none());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! World space is right-handed, in metres; colours are linear RGB with Rec. 709 primaries; an irradiance vector
 //! points towards where the light comes from and has the unit W/m² (or lux, if the file says so).
 //!
-//! Guarantees: the same grid gives the same bits whatever the order in which its vertices arrived; received vectors
+//! Guarantees: the same grid gives the same bits whatever the order in which its vertices arrived; received values
 //! are never altered; filled values and interpolated ones stay in the range of those that they come from; light that
 //! geometry keeps apart is never mixed while another vertex can answer.
 //!

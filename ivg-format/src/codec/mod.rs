@@ -18,7 +18,7 @@ use crate::values::{HemisphereVectors, RadianceHarmonics};
 use ivg_wire::Code;
 use packed::Packed;
 use pair::{Half, Pair, Single};
-pub(crate) use prepare::{Fault, Prepared};
+pub(crate) use prepare::{Fault, Prepared, Scale};
 
 /// Hemispheres of a vertex.
 pub(crate) const HEMISPHERES: usize = 6;

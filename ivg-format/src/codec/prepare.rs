@@ -57,33 +57,33 @@ pub(crate) enum Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// At the scale exponent `fixed`, or at the one that a writer should choose.
-    pub(crate) fn new(values: Values<'a>, encoding: Encoding, fixed: Option<i16>) -> Result<Self, Fault> {
+    /// At a scale exponent as `scale` asks for.
+    pub(crate) fn new(values: Values<'a>, encoding: Encoding, scale: Scale) -> Result<Self, Fault> {
         match (encoding, values) {
             (Encoding::PackedOct24, Values::Vectors(vectors)) => {
-                Ok(Self::Octahedral(Hemispheres::new(vectors, fixed)?))
+                Ok(Self::Octahedral(Hemispheres::new(vectors, scale)?))
             }
             (Encoding::PackedXyz24, Values::Vectors(vectors)) => {
-                Ok(Self::Bytes(Hemispheres::new(vectors, fixed)?))
+                Ok(Self::Bytes(Hemispheres::new(vectors, scale)?))
             }
             (Encoding::PairF16 | Encoding::PairF16x4, Values::Vectors(vectors)) => Ok(Self::Half {
-                hemispheres: Hemispheres::new(vectors, fixed)?,
+                hemispheres: Hemispheres::new(vectors, scale)?,
                 padded: encoding == Encoding::PairF16x4,
             }),
             (Encoding::PairF32, Values::Vectors(vectors)) => {
-                Ok(Self::Single(Hemispheres::new(vectors, fixed)?))
+                Ok(Self::Single(Hemispheres::new(vectors, scale)?))
             }
             (Encoding::VectorsF32, Values::Vectors(vectors)) => {
                 match vectors.iter().enumerate().find_map(|(n, vertex)| Some((n, not_finite(vertex)?))) {
-                    None => match fixed {
-                        Some(file) if file != 0 => Err(Fault::ScaleExponent { file, needed: 0 }),
+                    None => match scale {
+                        Scale::Fixed(file) if file != 0 => Err(Fault::ScaleExponent { file, needed: 0 }),
                         _ => Ok(Self::Vectors(vectors)),
                     },
                     Some((vertex, hemisphere)) => Err(Fault::NotFinite(vertex, hemisphere)),
                 }
             }
             (Encoding::Sh2, Values::Radiance(radiance)) => {
-                let scale_exponent = scale_radiance(radiance, fixed)?;
+                let scale_exponent = scale_radiance(radiance, scale)?;
                 Ok(Self::Harmonics { vertices: relate(radiance, scale_exponent), scale_exponent })
             }
             _ => Err(Fault::Quantity),
@@ -132,7 +132,7 @@ fn not_finite(vertex: &HemisphereVectors) -> Option<usize> {
 }
 
 /// The scale exponent of the radiance of a grid, which must be finite and no more than can be stored.
-fn scale_radiance(radiance: &[RadianceHarmonics], fixed: Option<i16>) -> Result<i16, Fault> {
+fn scale_radiance(radiance: &[RadianceHarmonics], scale: Scale) -> Result<i16, Fault> {
     let limit = f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(*SCALE_EXPONENTS.end()));
     let mut largest = 0.0f64;
     for (vertex, channels) in radiance.iter().enumerate() {
@@ -144,7 +144,7 @@ fn scale_radiance(radiance: &[RadianceHarmonics], fixed: Option<i16>) -> Result<
             return Err(Fault::RadianceTooLarge(vertex));
         }
     }
-    settle(largest, rgb9e5::LARGEST, fixed)
+    settle(largest, rgb9e5::LARGEST, scale)
 }
 
 /// Means, and codes of the ratios to them (IVG-SH-06).
@@ -188,15 +188,29 @@ fn fill_radiance(all: &[Related], payload: &mut [u8], vertices: &[u64]) {
     }
 }
 
+/// Which scale exponent to store with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Scale {
+    /// The smallest that holds the grid, and this many more.
+    Smallest {
+        /// Powers of two by which light may get brighter later.
+        headroom: u8,
+    },
+    /// That of a file that is there already.
+    Fixed(i16),
+}
+
 /// The scale exponent of a file that has one already, if it holds `largest`; otherwise the one that a writer should choose.
-fn settle(largest: f64, storable: f32, fixed: Option<i16>) -> Result<i16, Fault> {
+fn settle(largest: f64, storable: f32, scale: Scale) -> Result<i16, Fault> {
     let needed = scale_exponent(largest, storable);
-    match fixed {
-        Some(file) if largest > f64::from(storable) * power_of_two_f64(i32::from(file)) => {
+    match scale {
+        Scale::Fixed(file) if largest > f64::from(storable) * power_of_two_f64(i32::from(file)) => {
             Err(Fault::ScaleExponent { file, needed })
         }
-        Some(file) => Ok(file),
-        None => Ok(needed),
+        Scale::Fixed(file) => Ok(file),
+        // Nothing is scaled in binary32, and darkness has no size.
+        Scale::Smallest { .. } if largest <= 0.0 || storable == f32::MAX => Ok(needed),
+        Scale::Smallest { headroom } => Ok((needed + i16::from(headroom)).min(*SCALE_EXPONENTS.end())),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::lists::Lists;
 use super::{EncodeError, GridSource, check_source, named, write_validity};
-use crate::codec::Prepared;
+use crate::codec::{Prepared, Scale};
 use crate::header::{Header, RecordId};
 use crate::order::explicit::write_list;
 use crate::values::{HemisphereVectors, RadianceHarmonics, Values};
@@ -53,7 +53,7 @@ pub fn encode_record(
         let vertices = record_vertices(source, header, id, &mut payload)?;
         // Only the values of this record are made ready, however large the grid is.
         let values = Gathered::of(source.values, &vertices);
-        let prepared = Prepared::new(values.borrowed(), header.encoding, Some(header.scale_exponent))
+        let prepared = Prepared::new(values.borrowed(), header.encoding, Scale::Fixed(header.scale_exponent))
             .map_err(|fault| named(fault, source, header.encoding, |index| vertices[index]))?;
         let index_bytes = payload.len();
         payload.resize(index_bytes + vertices.len() * header.encoding.bytes_per_vertex() as usize, 0);

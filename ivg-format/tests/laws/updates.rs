@@ -226,3 +226,31 @@ fn a_validity_record_is_not_replaced_and_still_read() {
     let small = plain([2, 2, 2], Encoding::PackedOct24, 1);
     assert!(replace_record(&mut small[..100].to_vec(), &record, &Limits::default()).is_err());
 }
+
+#[test]
+fn headroom_leaves_room_for_brighter_records_and_costs_no_precision() {
+    let lattice = lattice([3, 4, 2]);
+    let first = vectors(&lattice);
+    let brighter: Vec<_> = first.iter().map(|v| v.map(|h| h.map(|c| c.map(|x| 7.9 * x)))).collect();
+    for encoding in [Encoding::PackedOct24, Encoding::PackedXyz24, Encoding::PairF16, Encoding::PairF32] {
+        let written = |headroom| {
+            let options = EncodeOptions { headroom, ..options(encoding, 4) };
+            encode(&GridSource::new(lattice, &first), &options).unwrap()
+        };
+        let (tight, roomy) = (written(0), written(3));
+        let [tight_header, roomy_header] = [&tight, &roomy].map(|file| header(file));
+        let update =
+            |header| encode_record(&GridSource::new(lattice, &brighter), header, RecordId::Bundle(1), 1);
+        let scaled = encoding != Encoding::PairF32;
+        let more = if scaled { 3 } else { 0 };
+        assert_eq!(roomy_header.scale_exponent, tight_header.scale_exponent + more);
+        assert_eq!(update(&tight_header).is_ok(), !scaled, "{}", encoding.name());
+        update(&roomy_header).unwrap();
+        // The numbers span less than 2^30: they are the same with room and without.
+        let shown = |file: &[u8]| -> Vec<String> {
+            let (events, _) = one_shot(file);
+            events.into_iter().filter(|e| e.starts_with("Bundle") || e.starts_with("Corners")).collect()
+        };
+        assert_eq!(shown(&tight), shown(&roomy), "{}", encoding.name());
+    }
+}

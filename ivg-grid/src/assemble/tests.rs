@@ -172,11 +172,31 @@ fn a_stale_record_is_ignored_and_a_newer_one_replaces() {
             assert_eq!(read.get(index), expected.get(index), "generation {generation}, vertex {index}");
         }
     }
-    // Of another file nothing is known, whatever its generations.
+    // The same generation again is the same content: whatever comes under it changes nothing.
+    record(&new, 6)(&header, &mut read).expect("the same lattice");
+    assert_eq!(read.get(in_bundle[0] as usize), old.get(in_bundle[0] as usize));
+}
+
+#[test]
+fn a_record_of_another_file_is_refused_and_changes_nothing() {
+    let options = EncodeOptions { encoding: Encoding::VectorsF32, ..EncodeOptions::default() };
+    let old = grid();
+    let (mut read, _) = IrradianceGrid::from_file(
+        &encode(&old.as_source(), &options).expect("a sound grid"),
+        &Limits::default(),
+    )
+    .expect("a whole file");
+    let mut new = old.clone();
+    new.set(7, &[[[0.5; 3]; 3]; 6]);
     let other = encode(&new.as_source(), &options).expect("a sound grid");
-    decode_all(&other, &Limits::default(), |event| read.accept(&event).expect("the same lattice"))
-        .expect("a whole file");
-    assert_eq!(read, new);
+    let mut refused = 0;
+    decode_all(&other, &Limits::default(), |event| match read.accept(&event) {
+        Err(GridError::OtherFile) => refused += 1,
+        other => assert!(matches!(event, Event::End | Event::Chunk(_)), "{other:?} of {event:?}"),
+    })
+    .expect("a whole file");
+    assert!(refused > 2, "header, corners and bundles");
+    assert_eq!(read, old);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use super::super::HEMISPHERES;
 use super::super::packed::{COLOUR_BYTES, DIRECTION_BYTES};
 use super::keep::{Keep, Largest, Packed};
-use super::{Fault, GATHERED, settle};
+use super::{Fault, GATHERED, Scale, settle};
 use crate::header::SCALE_EXPONENTS;
 use crate::quant::pack::pack_hemisphere;
 use crate::quant::pair::{HalfDirection, SingleDirection};
@@ -23,7 +23,7 @@ pub(crate) struct Hemispheres<'a, Q: Keep> {
 }
 
 impl<'a, Q: Keep> Hemispheres<'a, Q> {
-    pub(super) fn new(vectors: &'a [HemisphereVectors], fixed: Option<i16>) -> Result<Self, Fault> {
+    pub(super) fn new(vectors: &'a [HemisphereVectors], scale: Scale) -> Result<Self, Fault> {
         // Colours of binary32 are not scaled (IVG-HDR-04).
         let highest = if Q::STORABLE == f32::MAX { 0 } else { *SCALE_EXPONENTS.end() };
         let limit = f64::from(Q::STORABLE) * power_of_two_f64(i32::from(highest));
@@ -39,9 +39,9 @@ impl<'a, Q: Keep> Hemispheres<'a, Q> {
             append::<Q, 1>(&mut kept, one, &mut largest_rest, limit)?;
         }
         let ((least, most), (least_rest, most_rest)) = (largest.bounds(), largest_rest.bounds());
-        let mut scale_exponent = settle(most.max(most_rest), Q::STORABLE, fixed);
-        if scale_exponent != settle(least.max(least_rest), Q::STORABLE, fixed) {
-            scale_exponent = settle(exactly_largest::<Q>(vectors), Q::STORABLE, fixed);
+        let mut scale_exponent = settle(most.max(most_rest), Q::STORABLE, scale);
+        if scale_exponent != settle(least.max(least_rest), Q::STORABLE, scale) {
+            scale_exponent = settle(exactly_largest::<Q>(vectors), Q::STORABLE, scale);
         }
         Ok(Self { vectors, kept, scale_exponent: scale_exponent? })
     }
