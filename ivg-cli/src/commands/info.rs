@@ -14,6 +14,8 @@ use crate::{files, table};
 struct Description {
     fields: Vec<(&'static str, Value)>,
     parts: Vec<Part>,
+    /// What the header only says the place of: it is neither read nor verified.
+    unread: &'static str,
 }
 
 /// A chunk or a run of records.
@@ -38,6 +40,7 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
             .map(|part| json!({ "part": part.what, "offset": part.offset, "bytes": part.bytes }))
             .collect();
         report.insert("parts".to_owned(), parts.into());
+        report.insert(format!("{}_verified", description.unread), false.into());
         files::print(&format!("{}\n", Value::from(report)))?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -51,7 +54,11 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
             .iter()
             .map(|part| vec![part.what.clone(), part.offset.to_string(), part.bytes.to_string()]),
     );
-    files::print(&format!("\n{}", table::layout(&rows, &[1, 2])))?;
+    files::print(&format!(
+        "\n{}\nThe {} are not verified; ivg check verifies them.\n",
+        table::layout(&rows, &[1, 2]),
+        description.unread,
+    ))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -73,8 +80,8 @@ fn grid(path: &Path, bytes: &[u8]) -> Result<Description, Failure> {
     let (mut lights, mut metadata) = (Vec::new(), serde_json::Map::new());
     let mut parts = Vec::new();
     let mut description: Option<Vec<(&'static str, Value)>> = None;
-    // Header and chunks only: the records follow from the header and need not have arrived.
-    loop {
+    // Header and chunks only: the records follow from the header and need neither have arrived nor be whole.
+    while decoder.header().is_none_or(|header| decoder.offset().0 < header.data_offset) {
         let offset = decoder.offset().0;
         let step = decoder.push(&bytes[offset as usize..]).map_err(refused)?;
         let Step::Consumed(used, event) = step else { break };
@@ -118,7 +125,7 @@ fn grid(path: &Path, bytes: &[u8]) -> Result<Description, Failure> {
         };
         parts.push(Part { what, offset: range.start, bytes: range.end - range.start });
     }
-    Ok(Description { fields, parts })
+    Ok(Description { fields, parts, unread: "records" })
 }
 
 fn grid_fields(header: &ivg_format::Header, length: usize) -> Vec<(&'static str, Value)> {
@@ -153,7 +160,7 @@ fn mesh(path: &Path, bytes: &[u8]) -> Result<Description, Failure> {
     let refused = |error: ivg_format::Error| Failure::file(path, error);
     let mut decoder = pmesh_format::Decoder::new(pmesh_format::Limits::default());
     let mut parts = Vec::new();
-    loop {
+    while decoder.header().is_none_or(|header| decoder.offset().0 < header.data_offset) {
         let offset = decoder.offset().0;
         let step = decoder.push(&bytes[offset as usize..]).map_err(refused)?;
         let Step::Consumed(used, event) = step else { break };
@@ -173,7 +180,7 @@ fn mesh(path: &Path, bytes: &[u8]) -> Result<Description, Failure> {
     }
     let end = header.end_range();
     parts.push(Part { what: "end".to_owned(), offset: end.start, bytes: end.end - end.start });
-    Ok(Description { fields: mesh_fields(header, bytes.len()), parts })
+    Ok(Description { fields: mesh_fields(header, bytes.len()), parts, unread: "packets" })
 }
 
 fn mesh_fields(header: &pmesh_format::Header, length: usize) -> Vec<(&'static str, Value)> {
