@@ -39,6 +39,10 @@ pub(crate) enum Command {
     /// Validate an .ivg or .pmesh file; the exit status is the verdict: 0 ok, 40 need-more, 41 invalid, 42 unsupported, 43 limit.
     Check(FileArguments),
     /// Write an .ivg file in another encoding or order.
+    ///
+    /// Most encodings lose something; what is lost is printed. No other encoding can be turned into sh2-28: bake with it.
+    /// Recoding packs the light again, also into the encoding that it has: in packed-xyz24 and the pair encodings this can
+    /// change the last bits.
     Recode(RecodeArguments),
     /// Irradiance at points with normals, from an .ivg file, as CSV.
     Sample(SampleArguments),
@@ -80,7 +84,7 @@ pub(crate) struct DemoArguments {
     #[arg(long, value_name = "WxH", default_value = "480x480")]
     pub(crate) size: PictureSize,
     /// Number of photons traced.
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = crate::scene_args::count::<u64>)]
     pub(crate) photons: u64,
     /// Number of grid vertices along x, y and z.
     #[arg(long, value_name = "NXxNYxNZ", default_value = "16x16x16")]
@@ -92,7 +96,7 @@ pub(crate) struct PlanArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
     /// Number of photons of the bake whose cost is estimated; the pilot traces 1 % of them.
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = crate::scene_args::count::<u64>)]
     pub(crate) photons: u64,
     /// Share of the light energy that may be left out by cutting bounces, in (0, 1).
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::scene_args::share)]
@@ -133,7 +137,7 @@ pub(crate) struct MeshArguments {
     #[arg(long, value_enum, default_value_t = CostArgument::Quadric)]
     pub(crate) cost: CostArgument,
     /// Vertices a packet [default: packets that grow with the mesh].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = crate::scene_args::count::<u32>)]
     pub(crate) packet: Option<u32>,
     /// Print figures as JSON.
     #[arg(long)]
@@ -255,7 +259,7 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "FACTOR", value_parser = crate::scene_args::positive)]
     pub(crate) exposure: Option<f32>,
     /// Samples a pixel of the path-traced reference.
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = crate::scene_args::count::<u32>)]
     pub(crate) samples: u32,
     #[command(flatten)]
     pub(crate) bake: BakeSettings,

@@ -1,5 +1,6 @@
 //! Parsers of composite arguments. Each error says what a right value looks like.
 
+use std::num::ParseIntError;
 use std::str::FromStr;
 
 use glam::DVec3;
@@ -85,6 +86,14 @@ impl FromStr for ScheduleArgument {
                 format!("'{text}' is not a schedule; give alternate, geometry, light, or the share of light such as 0.3")
             }),
         }
+    }
+}
+
+/// A number of things of which there must be one.
+pub(crate) fn count<T: FromStr<Err = ParseIntError> + From<u8> + PartialEq>(text: &str) -> Result<T, String> {
+    match text.parse::<T>() {
+        Ok(value) if value == T::from(0) => Err("must be at least 1".to_owned()),
+        parsed => parsed.map_err(|error| error.to_string()),
     }
 }
 

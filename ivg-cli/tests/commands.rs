@@ -38,7 +38,7 @@ fn check_exits_by_verdict() {
             place.write(&name, bytes);
             let output = place.run(&["check", &name, "--json"]);
             let report = text(&output.stdout);
-            assert!(report.contains("\"offset\":"), "{report}");
+            assert!(report.contains("\"offset\":") && report.contains("\"warnings\":[]"), "{report}");
             output.status.code()
         };
         assert_eq!(status("whole", &bytes), Some(0));
@@ -55,6 +55,41 @@ fn check_exits_by_verdict() {
     }
     assert_eq!(place.run(&["check", "no-such.ivg"]).status.code(), Some(1));
     assert_eq!(place.run(&["check"]).status.code(), Some(2));
+}
+
+#[test]
+fn info_tells_the_layout_of_a_file_with_damaged_records() {
+    let place = Workplace::with_room();
+    place.ok(&[&["bake", "room.obj", "-o", "light.ivg"][..], &SMALL].concat());
+    place.ok(&["mesh", "room.obj", "-o", "room.pmesh"]);
+    for (file, unread) in [("light.ivg", "records"), ("room.pmesh", "packets")] {
+        let bytes = place.read(file);
+        let whole = text(&place.ok(&["info", file]));
+        assert!(
+            whole.contains(&format!("The {unread} are not verified; ivg check verifies them.")),
+            "{whole}"
+        );
+        let report: serde_json::Value =
+            serde_json::from_slice(&place.ok(&["info", file, "--json"])).expect("JSON");
+        assert_eq!(report[format!("{unread}_verified")], false);
+        let first = report["prefix_bytes"].as_u64().expect("a number") as usize;
+        // In the first record, in the last, in the end record.
+        for at in [first + 20, bytes.len() - 60, bytes.len() - 2] {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= 1;
+            place.write(file, &damaged);
+            assert_eq!(text(&place.ok(&["info", file])), whole, "{file} at {at}");
+            assert_eq!(place.run(&["check", file]).status.code(), Some(41));
+        }
+        let mut damaged = bytes.clone();
+        damaged[first - 3] ^= 1;
+        place.write(file, &damaged);
+        assert_eq!(
+            place.run(&["info", file]).status.code(),
+            Some(1),
+            "{file}: header and chunks are verified"
+        );
+    }
 }
 
 #[test]
@@ -139,6 +174,9 @@ fn a_failure_is_one_line_and_leaves_no_file() {
 
     let output = place.run(&["bake", "dark.obj", "-o", "light.ivg", "--grid", "0x1x1"]);
     assert_eq!(output.status.code(), Some(2), "a usage error");
+    let output = place.run(&["bake", "dark.obj", "-o", "light.ivg", "--photons", "0"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("must be at least 1"), "{}", text(&output.stderr));
 }
 
 /// Linux's device that is always full stands for a disk that is.

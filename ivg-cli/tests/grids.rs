@@ -170,12 +170,24 @@ fn recode_says_what_cannot_be_had_and_what_is_lost() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     let message = text(&output.stderr);
     assert!(message.contains("lossy") && message.contains("radiance harmonics"), "{message}");
+    assert!(message.contains("irradiance differs by") && !message.contains("numbers"), "{message}");
     let report = json(&output.stdout);
+    assert!(report["values_relative_rmse"].is_null(), "nothing to compare: {report}");
     assert_eq!((&report["lossy"], &report["quantity_changed"]), (&true.into(), &true.into()));
     // Six exact vectors of radiance of degree 2 give the irradiance of its harmonics, but for rounding to f32.
     assert!(report["irradiance_relative_rmse"].as_f64().expect("a number") < 1e-5, "{report}");
     let (from_sh, from_six) = (sampled(&place, "sh.ivg", &[]), sampled(&place, "six.ivg", &[]));
     assert!(difference(&from_six, &from_sh) < 1e-5, "{from_six:?} {from_sh:?}");
+
+    let output = place.run(&["recode", "vectors.ivg", "-o", "less.ivg", "--encoding", "packed-xyz24"]);
+    let message = text(&output.stderr);
+    assert!(
+        message.contains("irradiance differs by") && message.contains(" %, stored numbers by"),
+        "{message}"
+    );
+    let help = text(&place.ok(&["recode", "--help"]));
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help.contains("what is lost is printed") && help.contains("into sh2-28: bake with it"), "{help}");
 
     let output = place.run(&["recode", "vectors.ivg", "-o", "same.ivg", "--order", "octree"]);
     assert!(output.status.success() && output.stderr.is_empty(), "nothing is lost: {}", text(&output.stderr));
@@ -233,6 +245,57 @@ fn a_file_cut_short_is_sampled_only_if_filled() {
         let output = place.run(&["sample", "light.ivg", "--points", "points.csv", "--fill"]);
         assert!(output.status.success() && !text(&output.stderr).contains("missing"), "{order}");
     }
+}
+
+#[test]
+fn points_that_touch_no_light_are_counted() {
+    // Light of 1 W/m² at the first vertex of four; the others are inside geometry.
+    let lattice = Lattice::new([4, 1, 1], [0.0; 3], [3.0, 0.0, 0.0]).expect("a row");
+    let mut vectors = [[[[0.0; 3]; 3]; 6]; 4];
+    vectors[0] = [[[1.0, 0.0, 0.0]; 3]; 6];
+    let mut source = GridSource::new(lattice, &vectors);
+    source.validity = Some(&[255, 0, 0, 0]);
+    let options = EncodeOptions { encoding: Encoding::VectorsF32, ..EncodeOptions::default() };
+    let place = Workplace::new();
+    place.write("row.ivg", &ivg_format::encode(&source, &options).expect("a grid"));
+    // In front of the light, in its cell, facing away from it, at a vertex without, in a cell without, beyond the end.
+    let points = ["0,0,0,1", "0.9,0,0,1", "0.5,0,0,-1", "1,0,0,1", "2.5,0,0,1", "9,0,0,1"]
+        .map(|p| p.to_owned() + ",0,0\n");
+    place.write("points.csv", format!("x,y,z,nx,ny,nz\n{}", points.concat()).as_bytes());
+    // The wider filter brings light to the vertex beside the first.
+    for (filter, unlit) in [("trilinear", 3), ("tricubic", 2)] {
+        let sample = ["sample", "row.ivg", "--points", "points.csv", "--filter", filter];
+        let output = place.run(&sample);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let message = text(&output.stderr);
+        let warning =
+            format!("{unlit} of 6 points touch only vertices without light; --fill gives those a value");
+        assert!(message.contains(&warning), "{message}");
+        let filled = place.run(&[&sample[..], &["--fill"]].concat());
+        assert!(!text(&filled.stderr).contains("touch"), "{}", text(&filled.stderr));
+        let lit = text(&filled.stdout).lines().skip(1).filter(|line| !line.ends_with(",0,0,0")).count();
+        assert_eq!(lit, 5, "all but the one that faces away: {}", text(&filled.stdout));
+    }
+}
+
+#[test]
+fn filling_from_nothing_says_so() {
+    let place = Workplace::with_room();
+    bake(&place, "light.ivg", &[]);
+    let prefix = json(&place.ok(&["info", "light.ivg", "--json"]))["prefix_bytes"].to_string();
+    place.write("cut.ivg", &place.read("light.ivg")[..prefix.parse().expect("a number")]);
+    place.write("points.csv", POINTS.as_bytes());
+    let output = place.run(&["sample", "cut.ivg", "--points", "points.csv", "--fill"]);
+    let message = text(&output.stderr);
+    assert!(
+        output.status.success() && message.contains("nothing has arrived: all values are 0"),
+        "{message}"
+    );
+    assert!(!message.contains("filled"), "{message}");
+    let message = text(&place.ok(&["extract", "cut.ivg", "-o", "cut.npy", "--fill"]));
+    assert!(message.contains("nothing has arrived") && !message.contains("filled"), "{message}");
+    let message = text(&place.ok(&["extract", "light.ivg", "-o", "cut.npy", "--fill"]));
+    assert!(message.contains("gaps are filled"), "{message}");
 }
 
 #[test]

@@ -18,7 +18,7 @@ pub(crate) struct BakeSettings {
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     pub(crate) bounds: Option<Bounds>,
     /// Number of photons traced.
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = crate::scene_args::count::<u64>)]
     pub(crate) photons: u64,
     /// How photon flights become what the grid holds; sh2-28 needs track-length.
     #[arg(long, value_enum, default_value_t = EstimatorArgument::TrackLength)]
@@ -35,8 +35,9 @@ pub(crate) struct BakeSettings {
     /// Number of threads [default: one a core]; the result does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Vertices of each slice across the longest axis that one bundle brings; bundles of other orders are as large.
-    #[arg(long, value_name = "S", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    /// Vertices of each slice across the longest axis that one bundle brings; bundles of octree have S × (vertices
+    /// along the longest axis), those of explicit at most so many.
+    #[arg(long, value_name = "S", default_value_t = 64, value_parser = crate::scene_args::count::<u32>)]
     pub(crate) per_slice: u32,
 }
 
@@ -64,9 +65,9 @@ pub(crate) struct RecodeArguments {
     /// In which order the output brings the vertices [default: as the input].
     #[arg(long, value_parser = registry::order())]
     pub(crate) order: Option<Order>,
-    /// Vertices of each slice across the longest axis that one bundle brings; bundles of other orders are as large [default:
-    /// as in the input].
-    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u32).range(1..))]
+    /// Vertices of each slice across the longest axis that one bundle brings; bundles of octree have S × (vertices
+    /// along the longest axis), those of explicit at most so many [default: as in the input].
+    #[arg(long, value_name = "S", value_parser = crate::scene_args::count::<u32>)]
     pub(crate) per_slice: Option<u32>,
     /// Seed of the order [default: as in the input].
     #[arg(long, value_name = "N")]
@@ -93,7 +94,8 @@ pub(crate) struct SampleArguments {
     /// How values between grid vertices are made.
     #[arg(long, value_enum, default_value_t = FilterArgument::Trilinear)]
     pub(crate) filter: FilterArgument,
-    /// Give vertices inside geometry, and those that a file cut short lacks, a value by push-pull first, as a client does.
+    /// First give a value to vertices inside geometry and to those a truncated file lacks (push-pull, as clients do).
+    /// Without it, points near only such vertices are 0.
     #[arg(long)]
     pub(crate) fill: bool,
 }

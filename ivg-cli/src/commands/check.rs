@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &FileArguments) -> Result<ExitCode, Failure> {
             "clause": result.as_ref().err().map(Error::clause),
             "offset": result.as_ref().err().map(|error| error.offset().0),
             "message": result.as_ref().err().map(ToString::to_string),
-            "warnings": result.as_ref().ok().map(|found| &found.warnings),
+            "warnings": result.as_ref().map_or(&[][..], |found| &found.warnings),
         });
         files::print(&format!("{report}\n"))?;
     } else {

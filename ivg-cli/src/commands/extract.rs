@@ -42,9 +42,13 @@ fn grid(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
     let array = npy::encode(&shape, numbers).map_err(|error| Failure::file(&arguments.out, error))?;
     files::write(&arguments.out, &array)?;
     let invalid = grid.vertex_count() - grid.valid_count();
-    let gaps = if arguments.fill { "filled" } else { "NaN" };
+    let gaps = match (arguments.fill, known) {
+        (false, _) => "gaps are NaN",
+        (true, 0) => "nothing has arrived: all values are 0",
+        (true, _) => "gaps are filled",
+    };
     files::print(&format!(
-        "{}: {} f32, {known} of {} vertices received, {invalid} invalid; gaps are {gaps}; {used} bytes used\n",
+        "{}: {} f32, {known} of {} vertices received, {invalid} invalid; {gaps}; {used} bytes used\n",
         arguments.out.display(),
         shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(" x "),
         grid.vertex_count(),

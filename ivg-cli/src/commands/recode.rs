@@ -150,7 +150,8 @@ fn report(
         report["from"] = described(from);
         report["lossy"] = lossy.into();
         report["quantity_changed"] = converted.into();
-        report["values_relative_rmse"] = loss.values.into();
+        // Numbers of different quantities cannot be compared.
+        report["values_relative_rmse"] = (!converted).then_some(loss.values).into();
         report["irradiance_relative_rmse"] = loss.irradiance.into();
         files::print(&format!("{report}\n"))?;
     } else {
@@ -162,20 +163,16 @@ fn report(
             phrase(from)
         ))?;
     }
-    if lossy {
-        let cannot = if converted {
-            format!(
-                "{} cannot be had back from {}; ",
-                from.0.encoding.quantity().name(),
-                to.0.encoding.quantity().name()
-            )
-        } else {
-            String::new()
-        };
+    let irradiance = percent(loss.irradiance);
+    if converted {
+        let [lost, kept] = [from, to].map(|(header, _)| header.encoding.quantity().name());
         eprintln!(
-            "ivg: lossy: {cannot}numbers differ by {}, irradiance by {} (relative RMSE)",
+            "ivg: lossy: {lost} cannot be had back from {kept}; irradiance differs by {irradiance} (relative RMSE over all vertices)"
+        );
+    } else if lossy {
+        eprintln!(
+            "ivg: lossy: irradiance differs by {irradiance}, stored numbers by {} (relative RMSE over all vertices; surfaces see the first)",
             percent(loss.values),
-            percent(loss.irradiance),
         );
     }
     Ok(())

@@ -28,6 +28,15 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
         .iter()
         .map(|point| grid.irradiance(point.position, point.normal, reconstruction, filter))
         .collect();
+    let unlit = points.iter().zip(&results);
+    let unlit = unlit.filter(|(point, light)| **light == Vec3::ZERO && !touches_light(&grid, point.position));
+    let unlit = unlit.count();
+    if unlit > 0 && !arguments.fill {
+        eprintln!(
+            "ivg: warning: {unlit} of {} points touch only vertices without light; --fill gives those a value",
+            results.len(),
+        );
+    }
     let table = points.with_results(&results).map_err(Failure::new)?;
     match &arguments.out {
         Some(out) => files::write(out, &table)?,
@@ -52,7 +61,9 @@ fn grid(arguments: &SampleArguments) -> Result<(IrradianceGrid, Encoding), Failu
     }
     let (header, grid, _) = reading::grid(path, &bytes)?;
     let missing = reading::missing(&grid);
-    if missing > 0 {
+    if grid.received_count() == 0 {
+        eprintln!("ivg: warning: {}: nothing has arrived: all values are 0", path.display());
+    } else if missing > 0 {
         eprintln!(
             "ivg: warning: {}: {missing} of {} vertices are missing and filled",
             path.display(),
@@ -100,4 +111,23 @@ fn is_outside(lattice: &Lattice, p: DVec3) -> bool {
     let [i, j, k] = lattice.dims.map(|n| n.saturating_sub(1));
     let (first, last) = (lattice.position(0, 0, 0), lattice.position(i, j, k));
     (0..3).any(|axis| lattice.dims[axis] > 1 && !(first[axis]..=last[axis]).contains(&p[axis]))
+}
+
+/// Whether a vertex that light reaches, and whose value is known, lies around a point: a corner of its cell, or of the
+/// face, edge or vertex that it lies on.
+fn touches_light(grid: &IrradianceGrid, p: DVec3) -> bool {
+    let lattice = grid.lattice();
+    let around: [[u16; 2]; 3] = std::array::from_fn(|axis| {
+        let last = lattice.dims[axis] - 1;
+        if last == 0 {
+            return [0; 2];
+        }
+        let at = ((p[axis] - lattice.origin[axis]) / lattice.step[axis]).clamp(0.0, f64::from(last));
+        [at.floor() as u16, at.ceil() as u16]
+    });
+    (0..8).any(|corner: usize| {
+        let [i, j, k] = std::array::from_fn(|axis| around[axis][corner >> axis & 1]);
+        let vertex = lattice.index(i, j, k) as usize;
+        grid.is_valid(vertex) && grid.has_value(vertex)
+    })
 }
