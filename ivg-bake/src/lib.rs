@@ -65,7 +65,7 @@
 //! };
 //! let result = bake(&scene, &scene.flatten(), &plan, &options, &Silent)?;
 //! // The floor reflects half of what falls on it, upwards: seen from above, light comes from −y.
-//! let vectors = result.grid.get(0).expect("every vertex of a bake is received");
+//! let vectors = result.grid.vectors()[0];
 //! assert!(vectors[3][1][1] < 0.0 && vectors[2][1] == [0.0; 3]);
 //! # Ok::<(), ivg_bake::BakeError>(())
 //! ```
