@@ -52,6 +52,7 @@ fn choose_options(choices: &mut Choices<'_>) -> EncodeOptions {
         seed: choices.long(),
         units: if choices.byte() < 128 { Units::Radiometric } else { Units::Photometric },
         order: [Order::Slices, Order::Octree, Order::Explicit][choices.below(3)],
+        headroom: choices.below(8) as u8,
     }
 }
 
