@@ -11,7 +11,7 @@ pub mod codes {
         /// The step does not fit the number of vertices.
         STEP = 303, Invalid, "IVG-LAT-03", "the step does not fit the number of vertices along its axis";
         /// The scale exponent is out of range.
-        SCALE_EXPONENT = 304, Invalid, "IVG-HDR-04", "the scale exponent is not in -125 to 112";
+        SCALE_EXPONENT = 304, Invalid, "IVG-HDR-04", "the scale exponent is not in -125 to 112, or to 110 in sh2-28";
         /// The number of vertices per slice is 0.
         SLICE_VERTICES = 305, Invalid, "IVG-ORD-03", "a bundle takes no vertex from a slice";
         /// The number of bundles does not follow from the lattice.

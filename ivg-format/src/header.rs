@@ -7,6 +7,7 @@ use crate::encoding::{Encoding, Order, Units};
 use crate::lattice::{Lattice, LatticeError};
 use crate::limits::Limits;
 use crate::order::{BundleVertices, Rule};
+use crate::values::Quantity;
 use crate::wire::{FORMAT, HEADER_BYTES, Specific, at};
 use core::ops::Range;
 use ivg_wire::{
@@ -191,7 +192,7 @@ impl Header {
             id => Order::from_id(id).ok_or(fail(codes::ORDER_UNKNOWN, at::ORDER))?,
         };
         let scale_exponent = wire.scale_exponent.get();
-        if !SCALE_EXPONENTS.contains(&scale_exponent) {
+        if !scale_exponents(encoding).contains(&scale_exponent) {
             return Err(fail(codes::SCALE_EXPONENT, at::SCALE_EXPONENT));
         }
         let header = Self {
@@ -463,6 +464,15 @@ impl Header {
 
 /// The scale exponents for which every RGB9E5 colour is exact in binary32 (IVG-HDR-04).
 pub(crate) const SCALE_EXPONENTS: core::ops::RangeInclusive<i16> = -125..=112;
+
+/// The scale exponents that an encoding may have: in `sh2-28`, coefficients are up to √5 times the scaled colour and must be
+/// finite in binary32 too (IVG-HDR-04).
+pub(crate) const fn scale_exponents(encoding: Encoding) -> core::ops::RangeInclusive<i16> {
+    match encoding.quantity() {
+        Quantity::Vectors => SCALE_EXPONENTS,
+        Quantity::Radiance => -125..=110,
+    }
+}
 
 fn fail(code: Code, at: u64) -> Error {
     Error::new(code, ByteOffset(at), Part::Header)

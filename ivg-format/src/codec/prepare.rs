@@ -6,7 +6,7 @@ mod keep;
 
 use super::harmonics::{MEAN_BYTES, RATIOS};
 use crate::encoding::Encoding;
-use crate::header::SCALE_EXPONENTS;
+use crate::header::{SCALE_EXPONENTS, scale_exponents};
 use crate::quant::direction::Octahedral24;
 use crate::quant::pair::{HalfDirection, SingleDirection};
 use crate::quant::xyz::Xyz24;
@@ -133,7 +133,8 @@ fn not_finite(vertex: &HemisphereVectors) -> Option<usize> {
 
 /// The scale exponent of the radiance of a grid, which must be finite and no more than can be stored.
 fn scale_radiance(radiance: &[RadianceHarmonics], scale: Scale) -> Result<i16, Fault> {
-    let limit = f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(*SCALE_EXPONENTS.end()));
+    let highest = *scale_exponents(Encoding::Sh2).end();
+    let limit = f64::from(rgb9e5::LARGEST) * power_of_two_f64(i32::from(highest));
     let mut largest = 0.0f64;
     for (vertex, channels) in radiance.iter().enumerate() {
         if !channels.as_flattened().iter().fold(true, |all, c| all & c.is_finite()) {
@@ -144,7 +145,7 @@ fn scale_radiance(radiance: &[RadianceHarmonics], scale: Scale) -> Result<i16, F
             return Err(Fault::RadianceTooLarge(vertex));
         }
     }
-    settle(largest, rgb9e5::LARGEST, scale)
+    Ok(settle(largest, rgb9e5::LARGEST, scale)?.min(highest))
 }
 
 /// Means, and codes of the ratios to them (IVG-SH-06).

@@ -419,3 +419,25 @@ quickcheck! {
         }))
     }
 }
+
+#[test]
+fn harmonics_are_finite_at_every_scale_that_is_allowed() {
+    // The brightest mean that there is, and the largest ratios.
+    let mut brightest = [127; 28];
+    brightest[..4].copy_from_slice(&u32::MAX.to_le_bytes());
+    let (file, _) = one_vertex(Encoding::Sh2, 110, &brightest);
+    let mut largest = 0.0f32;
+    decode_all(&file, &Limits::default(), |event| {
+        if let Event::Corners(bundle) = event {
+            largest = bundle.radiance(0).as_flattened().iter().fold(0.0, |most: f32, c| most.max(*c));
+        }
+    })
+    .unwrap();
+    assert!(largest.is_finite() && largest > 1e38, "{largest}");
+    // One more, and the same numbers would not be: the header is refused.
+    let mut over = file;
+    over[114..116].copy_from_slice(&111i16.to_le_bytes());
+    ivg_wire::seal_header(&mut over[..144]);
+    let error = decode_all(&over, &Limits::default(), |_| {}).unwrap_err();
+    assert_eq!((error.code(), error.offset().0), (codes::SCALE_EXPONENT.number(), 114));
+}

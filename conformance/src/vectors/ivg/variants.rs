@@ -127,6 +127,13 @@ pub(super) fn refused(harmonics: &[u8], octree: &[u8], explicit: &[u8], slices: 
     let mut list = vec![
         (HARMONICS, "ratio", ivg::RATIO_CODE, ratio, "a ratio with the forbidden code -128"),
         (
+            HARMONICS,
+            "scale-exponent-harmonics",
+            ivg::SCALE_EXPONENT,
+            in_header(harmonics, at::SCALE_EXPONENT, &111i16.to_le_bytes()),
+            "a scale with which coefficients can exceed binary32",
+        ),
+        (
             OCTREE,
             "octree-bundles",
             ivg::BUNDLE_COUNT,
