@@ -21,11 +21,10 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use common::{AnyError, lit_box, numbers, plan_of, vertices_at};
+use common::{AnyError, numbers, plan_of, vertices_at};
 use glam::DVec3;
 use ivg_bake::reference::{GatheredVectors, Oracle, Sampling};
 use ivg_bake::{BakeOptions, Estimator, Silent, bake};
-use ivg_scene::import::{self, ImportOptions};
 
 mod common;
 
@@ -42,10 +41,7 @@ struct Arguments {
 
 fn main() -> Result<(), AnyError> {
     let arguments = parse(std::env::args().skip(1))?;
-    let scene = match &arguments.scene {
-        Some(path) => import::load(path, &ImportOptions { lights: arguments.lights.clone() })?,
-        None => lit_box(),
-    };
+    let scene = common::open(arguments.scene.as_deref(), arguments.lights.as_deref())?;
     let flat = scene.flatten();
     let plan = plan_of(&scene);
     let oracle = Oracle::new(&scene, &flat)?;

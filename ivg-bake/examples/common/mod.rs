@@ -1,8 +1,11 @@
 //! What the examples share: a scene, a plan, and which vertices are looked at.
 
+use std::path::Path;
+
 use glam::Vec3;
 use ivg_bake::reference::Oracle;
 use ivg_grid::IrradianceGrid;
+use ivg_scene::import::{self, ImportOptions};
 use ivg_scene::{Effect, EffectPlan, Material, Mesh, Need, Node, PlannedEffect, Scene};
 
 pub(crate) type AnyError = Box<dyn std::error::Error>;
@@ -52,8 +55,16 @@ pub(crate) fn plan_of(scene: &Scene) -> EffectPlan {
     }
 }
 
+/// The scene at `path` with the lights of `lights`; the built-in room without a path.
+pub(crate) fn open(path: Option<&Path>, lights: Option<&Path>) -> Result<Scene, AnyError> {
+    match path {
+        Some(path) => Ok(import::load(path, &ImportOptions { lights: lights.map(Into::into) })?),
+        None => Ok(lit_box()),
+    }
+}
+
 /// A closed room of 2 m with two coloured walls, two boxes on its floor and a lit square under its ceiling.
-pub(crate) fn lit_box() -> Scene {
+fn lit_box() -> Scene {
     let mut mesh = Mesh { name: "room".into(), ..Mesh::default() };
     let mut add = |corner: [f32; 3], u: [f32; 3], v: [f32; 3], material: u32| {
         let [corner, u, v] = [corner, u, v].map(Vec3::from);

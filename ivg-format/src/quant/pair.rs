@@ -55,6 +55,21 @@ fn all_inside<const N: usize>(vectors: &[[f64; N]; 3], axis: usize, positive: bo
     directions
 }
 
+/// Codes of `N` directions `[xyz][n]`, and the component along `axis` of what a reader makes of them.
+#[inline(always)]
+fn store_all<Q: DirectionQuantiser, const N: usize>(
+    directions: &[[f32; N]; 3],
+    code_of: impl Fn([f32; 3]) -> Q::Code,
+    axis: usize,
+    codes: &mut [Q::Code; N],
+    along: &mut [f64; N],
+) {
+    for (n, (code, along)) in codes.iter_mut().zip(along).enumerate() {
+        *code = code_of(directions.each_ref().map(|component| component[n]));
+        *along = f64::from(Q::decode(code)[axis]);
+    }
+}
+
 impl DirectionQuantiser for HalfDirection {
     type Code = [u16; 3];
 
@@ -75,10 +90,7 @@ impl DirectionQuantiser for HalfDirection {
         along: &mut [f64; N],
     ) {
         let directions = all_inside(vectors, axis, positive);
-        for (n, (code, along)) in codes.iter_mut().zip(along).enumerate() {
-            *code = directions.each_ref().map(|component| half::from_f32(component[n]));
-            *along = f64::from(Self::decode(code)[axis]);
-        }
+        store_all::<Self, N>(&directions, |direction| direction.map(half::from_f32), axis, codes, along);
     }
 }
 
@@ -101,10 +113,7 @@ impl DirectionQuantiser for SingleDirection {
         along: &mut [f64; N],
     ) {
         let directions = all_inside(vectors, axis, positive);
-        for (n, (code, along)) in codes.iter_mut().zip(along).enumerate() {
-            *code = directions.each_ref().map(|component| component[n]);
-            *along = f64::from(Self::decode(code)[axis]);
-        }
+        store_all::<Self, N>(&directions, |direction| direction, axis, codes, along);
     }
 }
 
