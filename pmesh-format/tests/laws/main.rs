@@ -1,0 +1,8 @@
+//! The laws of the .pmesh format, on small files built here.
+
+mod damage;
+mod files;
+mod hostile;
+mod judgement;
+mod splits;
+mod writer;
