@@ -9,9 +9,9 @@ use crate::header::{Header, RecordId};
 use crate::limits::Limits;
 use crate::metadata::{self, LIGHTS, METADATA};
 use crate::validity::ValidityBlock;
-use alloc::vec::Vec;
 use ivg_wire::{
-    ByteOffset, Chunk, ChunkArea, ChunkKind, Error, Part, Record, Step, codes, read_end, read_record,
+    Answer, ByteOffset, Chunk, ChunkArea, Error, Format, Part, Record, Step, codes, fetched_alone, once,
+    read_end, read_record,
 };
 
 /// What a decoder found. Payloads are windows into the caller's bytes.
@@ -58,155 +58,83 @@ pub enum Event<'a> {
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
-pub struct Decoder {
-    limits: Limits,
-    header: Option<Header>,
-    state: State,
-    offset: u64,
-}
+pub type Decoder = ivg_wire::Decoder<Ivg>;
 
+/// A decoder that owns the buffer: takes the bytes of a file in pieces of any size, as a network delivers them.
+///
+/// It holds at most the bytes of one header, chunk or record besides the piece just given.
+pub type BufferedDecoder = ivg_wire::BufferedDecoder<Ivg>;
+
+/// The .ivg format, as the decoders of `ivg_wire` know it.
 #[derive(Clone, Copy, Debug)]
-enum State {
-    Header,
-    Chunks(ChunkArea, Seen),
-    Record(RecordId),
-    Ended,
-    Failed(Error),
-}
+pub enum Ivg {}
 
 /// Which of the chunks that may appear once have appeared.
 #[derive(Clone, Copy, Debug, Default)]
-struct Seen {
+pub struct Seen {
     lights: bool,
     metadata: bool,
 }
 
-impl Decoder {
-    /// A decoder that accepts files within `limits`.
-    #[must_use]
-    pub const fn new(limits: Limits) -> Self {
-        Self { limits, header: None, state: State::Header, offset: 0 }
+impl Format for Ivg {
+    type Header = Header;
+    type Limits = Limits;
+    type Seen = Seen;
+    type Record = RecordId;
+    type Event<'a> = Event<'a>;
+    const FIRST: RecordId = RecordId::Corners;
+
+    fn wire_limits(limits: &Limits) -> &ivg_wire::Limits {
+        &limits.wire
     }
 
-    /// The header, once it has been read.
-    #[must_use]
-    pub const fn header(&self) -> Option<&Header> {
-        self.header.as_ref()
+    fn part(record: RecordId) -> Part {
+        Part::Record(record.stored())
     }
 
-    /// How many bytes have been consumed: where in the file the next input must begin.
-    #[must_use]
-    pub const fn offset(&self) -> ByteOffset {
-        ByteOffset(self.offset)
+    fn read_header(input: &[u8], limits: &Limits) -> Result<Step<(Header, ChunkArea)>, Error> {
+        Ok(Header::read_with_chunks(input, limits)?.map(|read| (read.header, read.chunks)))
     }
 
-    /// Whether the end record has been read.
-    #[must_use]
-    pub const fn is_finished(&self) -> bool {
-        matches!(self.state, State::Ended)
+    fn header_event(header: &Header) -> Event<'_> {
+        Event::Header(header)
     }
 
-    /// Reads the next event from the bytes at [`Decoder::offset`].
-    ///
-    /// After the end record, empty input is answered with `NeedMore(0)` and any other with an error, since a
-    /// file ends there; who reads a file inside a longer stream stops at [`Event::End`].
-    ///
-    /// # Errors
-    ///
-    /// What is wrong with the file, see [`Error`]; the same error again for every call after the first. The
-    /// error does not depend on how the bytes were split.
-    pub fn push<'a>(&'a mut self, input: &'a [u8]) -> Result<Step<Event<'a>>, Error> {
-        let Self { limits, header, state, offset } = self;
-        match advance(limits, header, state, *offset, input) {
-            Ok(Step::Consumed(used, event)) => {
-                *offset = offset.saturating_add(used as u64);
-                Ok(Step::Consumed(used, event))
+    fn check_chunk(header: &Header, chunk: &Chunk<'_>, seen: &mut Seen) -> Result<(), Error> {
+        match chunk.kind {
+            LIGHTS => {
+                once(chunk, &mut seen.lights)?;
+                metadata::lights(chunk).map(drop)
             }
-            Ok(Step::NeedMore(more)) => Ok(Step::NeedMore(more)),
-            Err(error) => {
-                *state = State::Failed(error);
-                Err(error)
+            METADATA => {
+                once(chunk, &mut seen.metadata)?;
+                metadata::metadata(chunk).map(drop)
             }
+            // The one of the order explicit has been read with the header.
+            DIRECTORY => {
+                let again = header.order == Order::Explicit;
+                let code = if again { codes::CHUNK_REPEATED } else { ours::DIRECTORY_FORBIDDEN };
+                Err(Error::new(code, chunk.offset, Part::Chunk(DIRECTORY)))
+            }
+            _ => chunk.skip_unknown(),
         }
     }
 
-    /// The error of an input that ends here, although the file does not.
-    fn truncated(&self, rest: usize) -> Error {
-        let part = match self.state {
-            State::Header => Part::Header,
-            State::Chunks(..) => Part::Chunks,
-            State::Record(id) => Part::Record(id.stored()),
-            State::Ended => Part::AfterEnd,
-            State::Failed(error) => return error,
-        };
-        Error::truncated(ByteOffset(self.offset.saturating_add(rest as u64)), part)
+    fn chunk_event(chunk: Chunk<'_>) -> Event<'_> {
+        Event::Chunk(chunk)
     }
-}
 
-fn advance<'a>(
-    limits: &Limits,
-    header: &'a mut Option<Header>,
-    state: &mut State,
-    offset: u64,
-    input: &'a [u8],
-) -> Result<Step<Event<'a>>, Error> {
-    match (*state, header) {
-        (State::Failed(error), _) => Err(error),
-        (State::Chunks(mut area, mut seen), header) => {
-            let step = area.read(input, &limits.wire)?;
-            if let Step::Consumed(_, chunk) = &step {
-                check_chunk(chunk, &mut seen, header.as_ref())?;
-                *state = after_chunk(area, seen);
-            }
-            Ok(step.map(Event::Chunk))
-        }
-        (State::Record(id), Some(header)) => {
-            let step = read_event(header, id, input, ByteOffset(offset))?;
-            if let Step::Consumed(..) = step {
-                *state = header.next_record(id).map_or(State::Ended, State::Record);
-            }
-            Ok(step)
-        }
-        (State::Ended, _) if input.is_empty() => Ok(Step::NeedMore(0)),
-        (State::Ended, _) => Err(Error::new(codes::TRAILING_BYTES, ByteOffset(offset), Part::AfterEnd)),
-        // A record is never expected before there is a header.
-        (State::Header | State::Record(_), place) => {
-            Ok(Header::read_with_chunks(input, limits)?.map(|read| {
-                *state = after_chunk(read.chunks, Seen::default());
-                Event::Header(place.insert(read.header))
-            }))
-        }
+    fn read_record<'a>(
+        header: &'a Header,
+        record: RecordId,
+        input: &'a [u8],
+        offset: ByteOffset,
+    ) -> Result<Step<Event<'a>>, Error> {
+        read_event(header, record, input, offset)
     }
-}
 
-fn after_chunk(area: ChunkArea, seen: Seen) -> State {
-    if area.is_done() { State::Record(RecordId::Corners) } else { State::Chunks(area, seen) }
-}
-
-fn check_chunk(chunk: &Chunk<'_>, seen: &mut Seen, header: Option<&Header>) -> Result<(), Error> {
-    let once = |kind: ChunkKind, seen: &mut bool| {
-        if core::mem::replace(seen, true) {
-            return Err(Error::new(codes::CHUNK_REPEATED, chunk.offset, Part::Chunk(kind)));
-        }
-        Ok(())
-    };
-    match chunk.kind {
-        LIGHTS => {
-            once(LIGHTS, &mut seen.lights)?;
-            metadata::lights(chunk).map(drop)
-        }
-        METADATA => {
-            once(METADATA, &mut seen.metadata)?;
-            metadata::metadata(chunk).map(drop)
-        }
-        // The one of the order explicit has been read with the header.
-        DIRECTORY => {
-            let again = header.is_some_and(|header| header.order == Order::Explicit);
-            let code = if again { codes::CHUNK_REPEATED } else { ours::DIRECTORY_FORBIDDEN };
-            Err(Error::new(code, chunk.offset, Part::Chunk(DIRECTORY)))
-        }
-        _ => chunk.skip_unknown(),
+    fn next_record(header: &Header, record: RecordId) -> Option<RecordId> {
+        header.next_record(record)
     }
 }
 
@@ -248,91 +176,19 @@ pub fn decode_record<'a>(header: &'a Header, id: RecordId, bytes: &'a [u8]) -> R
     if range.is_empty() {
         return Err(Error::new(codes::RECORD_ID, offset, part));
     }
-    match read_event(header, id, bytes, offset)? {
-        Step::NeedMore(_) => {
-            Err(Error::truncated(ByteOffset(range.start.saturating_add(bytes.len() as u64)), part))
-        }
-        Step::Consumed(used, _) if used < bytes.len() => {
-            Err(Error::new(codes::RECORD_LENGTH, ByteOffset(range.end), part))
-        }
-        Step::Consumed(_, event) => Ok(event),
-    }
+    fetched_alone(read_event(header, id, bytes, offset)?, &range, bytes.len(), part)
 }
 
 /// Reads a whole file: every event in order, and nothing after the end record.
 ///
 /// # Errors
 ///
-/// As [`Decoder::push`]; truncated if the file ends too early, malformed if it goes on after the end record.
-/// Events before the error have been seen by `visit`.
-pub fn decode_all(bytes: &[u8], limits: &Limits, visit: impl FnMut(Event<'_>)) -> Result<(), Error> {
-    let mut decoder = Decoder::new(*limits);
-    let used = read_all(&mut decoder, bytes, visit)?;
-    if decoder.is_finished() { Ok(()) } else { Err(decoder.truncated(bytes.len().saturating_sub(used))) }
-}
-
-/// Reads events as long as `input` has whole ones; says how many bytes they were.
-fn read_all(decoder: &mut Decoder, input: &[u8], mut visit: impl FnMut(Event<'_>)) -> Result<usize, Error> {
-    let mut used = 0usize;
-    while let Step::Consumed(more, event) = decoder.push(input.get(used..).unwrap_or(&[]))? {
-        visit(event);
-        used = used.saturating_add(more);
-    }
-    Ok(used)
-}
-
-/// A decoder that owns the buffer: takes the bytes of a file in pieces of any size, as a network delivers them.
-///
-/// It holds at most the bytes of one header, chunk or record besides the piece just given.
-#[derive(Clone, Debug)]
-pub struct BufferedDecoder {
-    decoder: Decoder,
-    buffer: Vec<u8>,
-}
-
-impl BufferedDecoder {
-    /// A decoder that accepts files within `limits`.
-    #[must_use]
-    pub const fn new(limits: Limits) -> Self {
-        Self { decoder: Decoder::new(limits), buffer: Vec::new() }
-    }
-
-    /// The header, once it has been read.
-    #[must_use]
-    pub const fn header(&self) -> Option<&Header> {
-        self.decoder.header()
-    }
-
-    /// Whether the end record has been read.
-    #[must_use]
-    pub const fn is_finished(&self) -> bool {
-        self.decoder.is_finished()
-    }
-
-    /// Takes the next piece and shows `visit` every event that it completes.
-    ///
-    /// # Errors
-    ///
-    /// As [`Decoder::push`], trailing bytes included.
-    pub fn feed(&mut self, piece: &[u8], visit: impl FnMut(Event<'_>)) -> Result<(), Error> {
-        // Events are read straight from the piece while nothing is waiting; only what is left is copied.
-        if self.buffer.is_empty() {
-            let used = read_all(&mut self.decoder, piece, visit)?;
-            self.buffer.extend_from_slice(piece.get(used..).unwrap_or(&[]));
-        } else {
-            self.buffer.extend_from_slice(piece);
-            let used = read_all(&mut self.decoder, &self.buffer, visit)?;
-            self.buffer.drain(..used);
-        }
-        Ok(())
-    }
-
-    /// Says that there are no more pieces.
-    ///
-    /// # Errors
-    ///
-    /// Truncated if the end record has not been read; or the error that [`BufferedDecoder::feed`] returned.
-    pub fn finish(&self) -> Result<(), Error> {
-        if self.is_finished() { Ok(()) } else { Err(self.decoder.truncated(self.buffer.len())) }
-    }
+/// As [`Decoder::push`]; truncated if the file ends too early, malformed if it goes on after the end record; what `visit`
+/// refuses. Events before the error have been seen by `visit`.
+pub fn decode_all<A: Answer>(
+    bytes: &[u8],
+    limits: &Limits,
+    visit: impl FnMut(Event<'_>) -> A,
+) -> Result<(), A::Error> {
+    ivg_wire::decode_all::<Ivg, A>(bytes, *limits, visit)
 }

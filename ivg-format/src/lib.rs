@@ -129,14 +129,14 @@ mod wire;
 
 pub use bundle::{Bundle, Vertices};
 pub use code::codes;
-pub use decode::{BufferedDecoder, Decoder, Event, decode_all, decode_record};
+pub use decode::{BufferedDecoder, Decoder, Event, Ivg, decode_all, decode_record};
 pub use directory::DIRECTORY;
 pub use encode::{EncodeError, EncodeOptions, GridSource, encode, encode_record};
 pub use encoding::{Encoding, Order, Units};
 pub use header::{Header, RecordId, VALIDITY_BLOCK};
 pub use ivg_wire::{
-    ByteOffset, Chunk, ChunkKind, Code, ContentId, Error, ErrorKind, Limits as WireLimits, Part, Step,
-    Verdict,
+    Answer, ByteOffset, Chunk, ChunkKind, Code, ContentId, Error, ErrorKind, Limits as WireLimits, Part,
+    Step, Verdict,
 };
 pub use lattice::{Lattice, LatticeError};
 pub use limits::Limits;

@@ -11,6 +11,8 @@
 //!
 //! - [`CommonHeader`] reads and writes bytes 0 to 56, [`ChunkArea`] and [`write_chunk`] the chunks,
 //!   [`read_record`] and [`write_record`] the records.
+//! - [`Decoder`] is the push decoder of every format: a format crate implements [`Format`] and names it. [`BufferedDecoder`]
+//!   owns the buffer; a visitor of events may answer with an error of its own ([`Answer`]).
 //! - [`Error`] says what is wrong, at which absolute byte, in which part, against which clause; its
 //!   [`Verdict`] is what a caller acts on.
 //! - Nothing here allocates while reading: payloads are windows into the caller's buffer, and a length is
@@ -37,10 +39,12 @@
 
 extern crate alloc;
 
+mod buffered;
 mod chunk;
 mod code;
 mod crc;
 mod cursor;
+mod decoder;
 mod error;
 mod hash;
 mod header;
@@ -48,16 +52,18 @@ mod limits;
 mod record;
 mod step;
 
+pub use buffered::BufferedDecoder;
 pub use chunk::{CHUNK_OVERHEAD, Chunk, ChunkArea, ChunkKind, chunk_len, write_chunk};
 pub use code::{Code, Rule, codes};
 pub use crc::{ContentId, crc32};
 pub use cursor::Cursor;
+pub use decoder::{Answer, Decoder, Format, decode_all, once};
 pub use error::{ByteOffset, Error, ErrorKind, Part, Verdict};
 pub use hash::splitmix64;
 pub use header::{COMMON_HEADER_BYTES, CommonHeader, FormatId, seal_header};
 pub use limits::{Limits, Maximum};
 pub use record::{
-    END_PAYLOAD, END_RECORD, RECORD_OVERHEAD, Record, begin_record, read_end, read_record, record_len, seal,
-    write_end, write_record,
+    END_PAYLOAD, END_RECORD, RECORD_OVERHEAD, Record, begin_record, fetched_alone, read_end, read_record,
+    record_len, seal, write_end, write_record,
 };
 pub use step::Step;

@@ -8,6 +8,7 @@ use crate::error::{ByteOffset, Error, Part};
 use crate::limits::Maximum;
 use crate::step::Step;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 /// Bytes of a record besides payload and padding: 8 before, 4 after.
 pub const RECORD_OVERHEAD: u64 = 12;
@@ -124,6 +125,23 @@ pub fn read_end(
             }
             Ok(Step::Consumed(used, ()))
         }
+    }
+}
+
+/// What was read of a record that was fetched alone: `given` bytes for those of `range` (COM-REC-06).
+///
+/// # Errors
+///
+/// Truncated if bytes are missing, malformed if there are more than the record has.
+pub fn fetched_alone<T>(step: Step<T>, range: &Range<u64>, given: usize, part: Part) -> Result<T, Error> {
+    match step {
+        Step::NeedMore(_) => {
+            Err(Error::truncated(ByteOffset(range.start.saturating_add(given as u64)), part))
+        }
+        Step::Consumed(used, _) if used < given => {
+            Err(Error::new(codes::RECORD_LENGTH, ByteOffset(range.end), part))
+        }
+        Step::Consumed(_, read) => Ok(read),
     }
 }
 

@@ -1,9 +1,10 @@
 //! Reading: the push decoder, and everything else as a loop over it.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::arithmetic_side_effects))]
 
-use alloc::vec::Vec;
-
-use ivg_wire::{ByteOffset, Chunk, ChunkArea, Error, Part, Step, codes, read_end, read_record};
+use ivg_wire::{
+    Answer, ByteOffset, Chunk, ChunkArea, Error, Format, Part, Step, codes, fetched_alone, once, read_end,
+    read_record,
+};
 
 use crate::code::codes as mesh_codes;
 use crate::header::Header;
@@ -58,139 +59,92 @@ pub enum Event<'a> {
 /// assert_eq!(replay.indices(), [[0, 1, 2]]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
-pub struct Decoder {
-    limits: Limits,
-    header: Option<Header>,
-    state: State,
-    offset: u64,
-}
+pub type Decoder = ivg_wire::Decoder<Pmesh>;
 
+/// A decoder that owns the buffer: takes the bytes of a file in pieces of any size, as a network delivers them.
+///
+/// It holds at most the bytes of one header, chunk or packet besides the piece just given.
+///
+/// ```
+/// # use pmesh_format::{BufferedDecoder, EncodeOptions, Error, Limits, ProgressiveMesh, Replay, Wedges, encode};
+/// # let mesh = ProgressiveMesh {
+/// #     positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+/// #     wedges: Wedges { vertices: vec![0, 1, 2], ..Wedges::default() },
+/// #     base_vertices: 3,
+/// #     faces: vec![[0, 1, 2]],
+/// #     ..ProgressiveMesh::default()
+/// # };
+/// # let file = encode(&mesh, &EncodeOptions::default()).unwrap();
+/// let mut decoder = BufferedDecoder::new(Limits::default());
+/// let mut replay = Replay::default();
+/// for piece in file.chunks(100) {
+///     decoder.feed(piece, |event| replay.accept(&event).map(drop))?;
+///     // All levels so far can be shown, from the first packet on.
+/// }
+/// decoder.finish()?;
+/// # Ok::<(), Error>(())
+/// ```
+pub type BufferedDecoder = ivg_wire::BufferedDecoder<Pmesh>;
+
+/// The .pmesh format, as the decoders of `ivg_wire` know it.
 #[derive(Clone, Copy, Debug)]
-enum State {
-    Header,
-    Chunks { area: ChunkArea, materials_seen: bool },
-    Packet(u32),
-    Ended,
-    Failed(Error),
-}
+pub enum Pmesh {}
 
-impl Decoder {
-    /// A decoder that accepts files within `limits`.
-    #[must_use]
-    pub const fn new(limits: Limits) -> Self {
-        Self { limits, header: None, state: State::Header, offset: 0 }
+impl Format for Pmesh {
+    type Header = Header;
+    type Limits = Limits;
+    /// Whether the names of materials have appeared.
+    type Seen = bool;
+    /// Index of the packet; the number of packets for the end record.
+    type Record = u32;
+    type Event<'a> = Event<'a>;
+    const FIRST: u32 = 0;
+
+    fn wire_limits(limits: &Limits) -> &ivg_wire::Limits {
+        &limits.wire
     }
 
-    /// The header, once it has been read.
-    #[must_use]
-    pub const fn header(&self) -> Option<&Header> {
-        self.header.as_ref()
+    fn part(record: u32) -> Part {
+        Part::Record(record)
     }
 
-    /// How many bytes have been consumed: where in the file the next input must begin.
-    #[must_use]
-    pub const fn offset(&self) -> ByteOffset {
-        ByteOffset(self.offset)
+    fn read_header(input: &[u8], limits: &Limits) -> Result<Step<(Header, ChunkArea)>, Error> {
+        Header::read_both(input, limits)
     }
 
-    /// Whether the end record has been read.
-    #[must_use]
-    pub const fn is_finished(&self) -> bool {
-        matches!(self.state, State::Ended)
+    fn header_event(header: &Header) -> Event<'_> {
+        Event::Header(header)
     }
 
-    /// Reads the next event from the bytes at [`Decoder::offset`].
-    ///
-    /// After the end record, empty input is answered with `NeedMore(0)` and any other with an error, since a file ends
-    /// there; who reads a file inside a longer stream stops at [`Event::End`].
-    ///
-    /// # Errors
-    ///
-    /// What is wrong with the file, see [`Error`]; the same error again for every call after the first. The error does not
-    /// depend on how the bytes were split.
-    pub fn push<'a>(&'a mut self, input: &'a [u8]) -> Result<Step<Event<'a>>, Error> {
-        let Self { limits, header, state, offset } = self;
-        match advance(limits, header, state, *offset, input) {
-            Ok(Step::Consumed(used, event)) => {
-                *offset = offset.saturating_add(used as u64);
-                Ok(Step::Consumed(used, event))
+    fn check_chunk(_: &Header, chunk: &Chunk<'_>, materials_seen: &mut bool) -> Result<(), Error> {
+        match chunk.kind {
+            DIRECTORY => Err(Error::new(codes::CHUNK_REPEATED, chunk.offset, Part::Chunk(DIRECTORY))),
+            MATERIALS => {
+                once(chunk, materials_seen)?;
+                material_names(chunk).map(drop)
             }
-            Ok(Step::NeedMore(more)) => Ok(Step::NeedMore(more)),
-            Err(error) => {
-                *state = State::Failed(error);
-                Err(error)
-            }
+            _ => chunk.skip_unknown(),
         }
     }
 
-    /// The error of an input that ends here, although the file does not.
-    fn truncated(&self, rest: usize) -> Error {
-        let part = match self.state {
-            State::Header => Part::Header,
-            State::Chunks { .. } => Part::Chunks,
-            State::Packet(k) => Part::Record(k),
-            State::Ended => Part::AfterEnd,
-            State::Failed(error) => return error,
-        };
-        Error::truncated(ByteOffset(self.offset.saturating_add(rest as u64)), part)
+    fn chunk_event(chunk: Chunk<'_>) -> Event<'_> {
+        Event::Chunk(chunk)
     }
-}
 
-fn advance<'a>(
-    limits: &Limits,
-    header: &'a mut Option<Header>,
-    state: &mut State,
-    offset: u64,
-    input: &'a [u8],
-) -> Result<Step<Event<'a>>, Error> {
-    match (*state, header) {
-        (State::Failed(error), _) => Err(error),
-        (State::Chunks { mut area, mut materials_seen }, _) => {
-            let step = area.read(input, &limits.wire)?;
-            if let Step::Consumed(_, chunk) = &step {
-                check_chunk(chunk, &mut materials_seen)?;
-                *state = after_chunk(area, materials_seen);
-            }
-            Ok(step.map(Event::Chunk))
+    fn read_record<'a>(
+        header: &'a Header,
+        record: u32,
+        input: &'a [u8],
+        offset: ByteOffset,
+    ) -> Result<Step<Event<'a>>, Error> {
+        if record < header.packet_count() {
+            return Ok(read_packet(header, record, input)?.map(Event::Packet));
         }
-        (State::Packet(k), Some(header)) => {
-            if k < header.packet_count() {
-                let step = read_packet(header, k, input)?;
-                if let Step::Consumed(..) = step {
-                    *state = State::Packet(k.saturating_add(1));
-                }
-                return Ok(step.map(Event::Packet));
-            }
-            let step = read_end(input, ByteOffset(offset), header.file_bytes, header.content_id)?;
-            if let Step::Consumed(..) = step {
-                *state = State::Ended;
-            }
-            Ok(step.map(|()| Event::End))
-        }
-        (State::Ended, _) if input.is_empty() => Ok(Step::NeedMore(0)),
-        (State::Ended, _) => Err(Error::new(codes::TRAILING_BYTES, ByteOffset(offset), Part::AfterEnd)),
-        // A packet is never expected before there is a header.
-        (State::Header | State::Packet(_), place) => {
-            Ok(Header::read_both(input, limits)?.map(|(read, area)| {
-                *state = after_chunk(area, false);
-                Event::Header(place.insert(read))
-            }))
-        }
+        Ok(read_end(input, offset, header.file_bytes, header.content_id)?.map(|()| Event::End))
     }
-}
 
-fn after_chunk(area: ChunkArea, materials_seen: bool) -> State {
-    if area.is_done() { State::Packet(0) } else { State::Chunks { area, materials_seen } }
-}
-
-fn check_chunk(chunk: &Chunk<'_>, materials_seen: &mut bool) -> Result<(), Error> {
-    let repeated = Error::new(codes::CHUNK_REPEATED, chunk.offset, Part::Chunk(chunk.kind));
-    match chunk.kind {
-        DIRECTORY => Err(repeated),
-        MATERIALS if core::mem::replace(materials_seen, true) => Err(repeated),
-        MATERIALS => material_names(chunk).map(drop),
-        _ => chunk.skip_unknown(),
+    fn next_record(header: &Header, record: u32) -> Option<u32> {
+        (record < header.packet_count()).then(|| record.saturating_add(1))
     }
 }
 
@@ -222,16 +176,7 @@ fn read_packet<'a>(header: &'a Header, k: u32, input: &'a [u8]) -> Result<Step<P
 /// As [`Decoder::push`]; truncated if bytes are missing, malformed if there are more, or if the file has no such packet.
 pub fn decode_packet<'a>(header: &'a Header, k: u32, bytes: &'a [u8]) -> Result<Packet<'a>, Error> {
     let range = header.packet_range(k);
-    match read_packet(header, k, bytes)? {
-        Step::NeedMore(_) => {
-            let end = ByteOffset(range.start.saturating_add(bytes.len() as u64));
-            Err(Error::truncated(end, Part::Record(k)))
-        }
-        Step::Consumed(used, _) if used < bytes.len() => {
-            Err(Error::new(codes::RECORD_LENGTH, ByteOffset(range.end), Part::Record(k)))
-        }
-        Step::Consumed(_, packet) => Ok(packet),
-    }
+    fetched_alone(read_packet(header, k, bytes)?, &range, bytes.len(), Part::Record(k))
 }
 
 /// Reads a whole file: every event in order, and nothing after the end record. What packets say is not checked; see
@@ -239,15 +184,14 @@ pub fn decode_packet<'a>(header: &'a Header, k: u32, bytes: &'a [u8]) -> Result<
 ///
 /// # Errors
 ///
-/// As [`Decoder::push`]; truncated if the file ends too early, malformed if it goes on after the end record. Events before
-/// the error have been seen by `visit`.
-pub fn decode_all(bytes: &[u8], limits: &Limits, mut visit: impl FnMut(Event<'_>)) -> Result<(), Error> {
-    let mut decoder = Decoder::new(*limits);
-    let used = read_all(&mut decoder, bytes, |event| {
-        visit(event);
-        Ok(())
-    })?;
-    if decoder.is_finished() { Ok(()) } else { Err(decoder.truncated(bytes.len().saturating_sub(used))) }
+/// As [`Decoder::push`]; truncated if the file ends too early, malformed if it goes on after the end record; what `visit`
+/// refuses. Events before the error have been seen by `visit`.
+pub fn decode_all<A: Answer>(
+    bytes: &[u8],
+    limits: &Limits,
+    visit: impl FnMut(Event<'_>) -> A,
+) -> Result<(), A::Error> {
+    ivg_wire::decode_all::<Pmesh, A>(bytes, *limits, visit)
 }
 
 /// Checks a whole file: everything that the specification demands of it.
@@ -256,84 +200,8 @@ pub fn decode_all(bytes: &[u8], limits: &Limits, mut visit: impl FnMut(Event<'_>
 ///
 /// The first rule that it breaks; truncated if it is valid as far as it goes.
 pub fn check(bytes: &[u8], limits: &Limits) -> Result<(), Error> {
-    let mut decoder = Decoder::new(*limits);
     let mut replay = Replay::default();
-    let used = read_all(&mut decoder, bytes, |event| replay.accept(&event).map(drop))?;
-    if decoder.is_finished() { Ok(()) } else { Err(decoder.truncated(bytes.len().saturating_sub(used))) }
-}
-
-/// Reads events as long as `input` has whole ones; says how many bytes they were.
-fn read_all(
-    decoder: &mut Decoder,
-    input: &[u8],
-    mut visit: impl FnMut(Event<'_>) -> Result<(), Error>,
-) -> Result<usize, Error> {
-    let mut used = 0usize;
-    while let Step::Consumed(more, event) = decoder.push(input.get(used..).unwrap_or(&[]))? {
-        visit(event)?;
-        used = used.saturating_add(more);
-    }
-    Ok(used)
-}
-
-/// A decoder that owns the buffer: takes the bytes of a file in pieces of any size, as a network delivers them.
-///
-/// It holds at most the bytes of one header, chunk or packet besides the piece just given.
-#[derive(Clone, Debug)]
-pub struct BufferedDecoder {
-    decoder: Decoder,
-    buffer: Vec<u8>,
-}
-
-impl BufferedDecoder {
-    /// A decoder that accepts files within `limits`.
-    #[must_use]
-    pub const fn new(limits: Limits) -> Self {
-        Self { decoder: Decoder::new(limits), buffer: Vec::new() }
-    }
-
-    /// The header, once it has been read.
-    #[must_use]
-    pub const fn header(&self) -> Option<&Header> {
-        self.decoder.header()
-    }
-
-    /// Whether the end record has been read.
-    #[must_use]
-    pub const fn is_finished(&self) -> bool {
-        self.decoder.is_finished()
-    }
-
-    /// Takes the next piece and shows `visit` every event that it completes.
-    ///
-    /// # Errors
-    ///
-    /// As [`Decoder::push`], trailing bytes included.
-    pub fn feed(&mut self, piece: &[u8], mut visit: impl FnMut(Event<'_>)) -> Result<(), Error> {
-        let visit = |event: Event<'_>| {
-            visit(event);
-            Ok(())
-        };
-        // Events are read straight from the piece while nothing is waiting; only what is left is copied.
-        if self.buffer.is_empty() {
-            let used = read_all(&mut self.decoder, piece, visit)?;
-            self.buffer.extend_from_slice(piece.get(used..).unwrap_or(&[]));
-        } else {
-            self.buffer.extend_from_slice(piece);
-            let used = read_all(&mut self.decoder, &self.buffer, visit)?;
-            self.buffer.drain(..used);
-        }
-        Ok(())
-    }
-
-    /// Says that there are no more pieces.
-    ///
-    /// # Errors
-    ///
-    /// Truncated if the end record has not been read; or the error that [`BufferedDecoder::feed`] returned.
-    pub fn finish(&self) -> Result<(), Error> {
-        if self.is_finished() { Ok(()) } else { Err(self.decoder.truncated(self.buffer.len())) }
-    }
+    decode_all(bytes, limits, |event| replay.accept(&event).map(drop))
 }
 
 #[cfg(test)]

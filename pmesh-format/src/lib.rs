@@ -30,9 +30,7 @@
 //! let file = encode(&square, &EncodeOptions::default())?;
 //!
 //! let mut replay = Replay::default();
-//! let mut faults = Vec::new();
-//! decode_all(&file, &Limits::default(), |event| faults.extend(replay.accept(&event).err()))?;
-//! assert!(faults.is_empty());
+//! decode_all(&file, &Limits::default(), |event| replay.accept(&event).map(drop))?;
 //! assert_eq!(replay.indices(), [[0, 1, 2], [0, 2, 3]]);
 //! replay.set_level(3)?;
 //! assert_eq!(replay.indices(), [[0, 1, 2]]);
@@ -70,10 +68,10 @@ mod wire;
 
 pub use attributes::Attributes;
 pub use code::codes;
-pub use decode::{BufferedDecoder, Decoder, Event, check, decode_all, decode_packet};
+pub use decode::{BufferedDecoder, Decoder, Event, Pmesh, check, decode_all, decode_packet};
 pub use encode::{EncodeError, EncodeOptions, PacketSize, encode};
 pub use header::{Header, PacketEntry};
-pub use ivg_wire::{Error, Step, Verdict};
+pub use ivg_wire::{Answer, Error, Step, Verdict};
 pub use limits::{Limits, MAX_COUNT};
 pub use material::material_names;
 pub use mesh::{IndexedMesh, LevelFault, Wedges, check_level};
