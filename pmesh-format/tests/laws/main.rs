@@ -4,5 +4,6 @@ mod damage;
 mod files;
 mod hostile;
 mod judgement;
+mod levels;
 mod splits;
 mod writer;
