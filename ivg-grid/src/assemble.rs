@@ -87,29 +87,21 @@ impl IrradianceGrid {
     /// [`GridError::Format`] with what is wrong with the file (its end missing included), and
     /// [`GridError::TooManyVertices`] beyond [`Limits::vertices`].
     pub fn from_file(bytes: &[u8], limits: &Limits) -> Result<(Self, Header), GridError> {
-        let mut whole: Option<Result<(Self, Header), GridError>> = None;
-        let decoded = decode_all(bytes, limits, |event| match &mut whole {
-            None => {
-                if let Event::Header(header) = event
-                    && header.file_bytes <= bytes.len() as u64
-                {
-                    whole = {
-                        let grid =
-                            Self::with_limit(header.lattice, header.encoding.quantity(), limits.vertices);
-                        Some(grid.map(|grid| (grid, header.clone())))
-                    };
+        let mut whole: Option<(Self, Header)> = None;
+        decode_all(bytes, limits, |event| -> Result<(), GridError> {
+            match (&mut whole, &event) {
+                (None, Event::Header(header)) if header.file_bytes <= bytes.len() as u64 => {
+                    let quantity = header.encoding.quantity();
+                    let grid = Self::with_limit(header.lattice, quantity, limits.vertices)?;
+                    whole = Some((grid, (*header).clone()));
+                    Ok(())
                 }
+                (None, _) => Ok(()),
+                (Some((grid, _)), event) => grid.accept(event),
             }
-            Some(Ok((grid, _))) => {
-                if let Err(error) = grid.accept(&event) {
-                    whole = Some(Err(error));
-                }
-            }
-            Some(Err(_)) => {}
-        });
-        decoded.map_err(GridError::Format)?;
+        })?;
         // A file that decodes has a header and is as long as it says.
-        whole.unwrap_or(Err(GridError::OtherLattice))
+        whole.ok_or(GridError::OtherLattice)
     }
 
     /// The grid as something to encode, without lights and metadata, which a file that was read has in its chunks, and

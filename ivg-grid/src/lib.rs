@@ -38,7 +38,7 @@
 //! ```
 //! use glam::{DVec3, Vec3};
 //! use ivg_format::{BufferedDecoder, Event, Limits};
-//! use ivg_grid::{FillOptions, FilledGrid, IrradianceGrid, Reconstruction, SpatialFilter};
+//! use ivg_grid::{FillOptions, FilledGrid, GridError, IrradianceGrid, Reconstruction, SpatialFilter};
 //! # use ivg_format::{EncodeOptions, GridSource, Lattice, encode};
 //! # let lattice = Lattice::new([5, 5, 5], [0.0; 3], [1.0; 3])?;
 //! # let file = encode(&GridSource::new(lattice, &vec![[[[1.0; 3]; 3]; 6]; 125]), &EncodeOptions::default())?;
@@ -47,17 +47,16 @@
 //! let limits = Limits { vertices: 1 << 20, ..Limits::default() };
 //! let mut decoder = BufferedDecoder::new(limits);
 //! let mut light: Option<FilledGrid> = None;
-//! let mut failed = None;
 //! for piece in file.chunks(1000) {
-//!     decoder.feed(piece, |event| {
+//!     decoder.feed(piece, |event| -> Result<(), GridError> {
 //!         if let Event::Header(header) = &event {
-//!             match IrradianceGrid::with_limit(header.lattice, header.encoding.quantity(), limits.vertices) {
-//!                 Ok(grid) => light = Some(FilledGrid::new(grid, FillOptions::default())),
-//!                 Err(error) => failed = Some(error),
-//!             }
-//!         } else if let Some(Err(error)) = light.as_mut().map(|light| light.accept(&event)) {
-//!             failed = Some(error);
+//!             let quantity = header.encoding.quantity();
+//!             let grid = IrradianceGrid::with_limit(header.lattice, quantity, limits.vertices)?;
+//!             light = Some(FilledGrid::new(grid, FillOptions::default()));
+//!         } else if let Some(light) = &mut light {
+//!             light.accept(&event)?;
 //!         }
+//!         Ok(())
 //!     })?;
 //!     // Look at any moment: vertices that have not arrived are filled in.
 //!     if let (Some(light), Some(header)) = (&mut light, decoder.header()) {
@@ -67,7 +66,6 @@
 //!     }
 //! }
 //! decoder.finish()?;
-//! assert!(failed.is_none());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

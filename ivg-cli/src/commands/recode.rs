@@ -113,7 +113,6 @@ struct Rest {
 fn rest(path: &Path, bytes: &[u8]) -> Result<Rest, Failure> {
     let mut extras = Extras::default();
     let mut bundles = Vec::new();
-    let mut broken = None;
     let mut take = |chunk: &ivg_format::Chunk<'_>| -> Result<(), ivg_format::Error> {
         if chunk.kind == ivg_format::LIGHTS {
             let lights = ivg_format::lights(chunk)?;
@@ -126,13 +125,16 @@ fn rest(path: &Path, bytes: &[u8]) -> Result<Rest, Failure> {
         }
         Ok(())
     };
-    decode_all(bytes, &Limits::default(), |event| match event {
-        Event::Chunk(chunk) => broken = broken.or(take(&chunk).err()),
-        Event::Bundle(bundle) => bundles.push(bundle.vertices().collect()),
-        _ => {}
+    decode_all(bytes, &Limits::default(), |event| {
+        match event {
+            Event::Chunk(chunk) => take(&chunk)?,
+            Event::Bundle(bundle) => bundles.push(bundle.vertices().collect()),
+            _ => {}
+        }
+        Ok::<(), ivg_format::Error>(())
     })
     .map_err(|error| Failure::file(path, error))?;
-    broken.map_or(Ok(Rest { extras, bundles }), |error| Err(Failure::file(path, error)))
+    Ok(Rest { extras, bundles })
 }
 
 fn report(
