@@ -1,53 +1,16 @@
 //! The tables: those of the documents, the constants of this crate, the rows of `spec/tables`.
 
-use super::{of_format, path, read, rows};
+use super::document::{compare, compare_codes, markdown, shared_table, with_tables};
+use super::{of_format, read, rows};
 use ivg_format::{Encoding, Limits, Order, Units};
 use std::collections::BTreeSet;
-use std::fmt::Write;
-use toml::{Table, Value};
-
-/// A cell's text: numbers with thousands separated, absent fields as a dash.
-fn cell(row: &Table, key: &str) -> String {
-    match row.get(key) {
-        None => "–".into(),
-        Some(Value::String(text)) if key == "name" || key == "type" => format!("`{text}`"),
-        Some(Value::String(text)) => text.clone(),
-        Some(Value::Integer(n)) if ["maximum", "guaranteed", "default"].contains(&key) => {
-            let digits = n.to_string();
-            let groups: Vec<&str> =
-                digits.as_bytes().rchunks(3).rev().map(|g| std::str::from_utf8(g).unwrap()).collect();
-            groups.join(",")
-        }
-        Some(Value::Integer(n)) if key == "last" || *n > 0x7FFF_0000 => {
-            format!("{n:#010X}").replace("0X", "0x")
-        }
-        Some(Value::Boolean(b)) => if *b { "critical" } else { "ancillary" }.into(),
-        Some(other) => other.to_string(),
-    }
-}
-
-fn markdown(rows: &[Table], columns: &[&str]) -> String {
-    let mut out = format!("| {} |\n|{}\n", columns.join(" | "), "---|".repeat(columns.len()));
-    for row in rows {
-        let cells: Vec<String> = columns.iter().map(|key| cell(row, key)).collect();
-        writeln!(out, "| {} |", cells.join(" | ")).unwrap();
-    }
-    out
-}
+use toml::Table;
 
 /// The table that belongs between `<!-- table NAME -->` and `<!-- end -->` in a document.
 fn expected(document: &str, name: &str) -> String {
     let fields = ["offset", "type", "name", "clause", "text"];
     match name.split(' ').collect::<Vec<_>>()[..] {
         [kind @ ("header" | "chunk" | "record")] => markdown(&rows(document, kind), &fields),
-        ["errors", format] => {
-            let columns = ["code", "name", "verdict", "clause", "text"];
-            markdown(&of_format(rows("errors", "error"), format), &columns)
-        }
-        ["limits", format] => {
-            let columns = ["name", "text", "maximum", "guaranteed", "default"];
-            markdown(&of_format(rows("limits", "limit"), format), &columns)
-        }
         ["orders", order] => super::orders::markdown(order),
         ["values", quantiser] => super::values::markdown(quantiser),
         ["derived", _] => {
@@ -62,33 +25,15 @@ fn expected(document: &str, name: &str) -> String {
             };
             markdown(&rows("registry", key), columns)
         }
-        _ => panic!("{document}.md has an unknown table {name:?}"),
+        _ => shared_table(name).unwrap_or_else(|| panic!("{document}.md has an unknown table {name:?}")),
     }
 }
 
 #[test]
 fn the_tables_in_the_documents_are_those_of_the_table_files() {
     for document in ["common", "ivg"] {
-        let text = read(&format!("{document}.md"));
-        let mut out = String::new();
-        let mut rest = text.as_str();
-        while let Some(start) = rest.find("<!-- table ") {
-            let (before, marked) = rest.split_at(start);
-            let (mark, after) = marked.split_once(" -->\n").unwrap();
-            let end = after.find("<!-- end -->").unwrap_or_else(|| panic!("{document}: {mark} has no end"));
-            let name = mark.trim_start_matches("<!-- table ");
-            write!(out, "{before}{mark} -->\n{}", expected(document, name)).unwrap();
-            rest = &after[end..];
-        }
-        out.push_str(rest);
-        if std::env::var_os("IVG_BLESS").is_some() {
-            std::fs::write(path(&format!("{document}.md")), &out).unwrap();
-        } else {
-            for (found, expected) in text.lines().zip(out.lines()) {
-                assert_eq!(found, expected, "{document}.md differs from the tables");
-            }
-            assert!(text == out, "{document}.md differs from the tables in its length");
-        }
+        let name = format!("{document}.md");
+        compare(&name, &with_tables(&read(&name), |table| expected(document, table)));
     }
 }
 
@@ -135,14 +80,7 @@ fn no_two_errors_of_any_format_share_a_number_or_a_name() {
 
 #[test]
 fn every_error_code_equals_its_row() {
-    let rows = of_format(rows("errors", "error"), "ivg");
-    assert_eq!(rows.len(), ivg_format::codes::ALL.len());
-    for (row, code) in rows.iter().zip(ivg_format::codes::ALL) {
-        let rule = code.rule();
-        assert_eq!(row["code"].as_integer(), Some(rule.number.into()));
-        let ours = [rule.name, rule.verdict.name(), rule.clause, rule.text];
-        assert_eq!(["name", "verdict", "clause", "text"].map(|key| row[key].as_str().unwrap()), ours);
-    }
+    compare_codes("ivg", ivg_format::codes::ALL);
 }
 
 #[test]
