@@ -35,6 +35,9 @@ pub mod codes {
             "the error of a packet is negative, not finite or greater than that of the packet before";
         /// The material names cannot be read.
         MATERIAL_NAMES = 363, Invalid, "PMESH-MTRL-02", "the list of material names is not well formed";
+        /// Parameters of coded attributes that do not fit what the file has.
+        PARAMETERS = 364, Invalid, "PMESH-HDR-08",
+            "the bits or the box of coded attributes do not fit what the file has";
         /// A position that is not finite or outside the bounding box.
         POSITION = 501, Invalid, "PMESH-POS-02", "a position is not finite or outside the bounding box";
         /// A normal or texture coordinate that is not finite.

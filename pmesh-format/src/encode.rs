@@ -7,11 +7,12 @@ use ivg_wire::{
 };
 
 use crate::attributes::Attributes;
-use crate::header::{Header, PacketEntry};
+use crate::header::{Header, PARAMETER_BITS, PacketEntry};
 use crate::material::write_names;
 use crate::packet::{Bits, code_bits, write_varint};
 use crate::progressive::ProgressiveMesh;
 use crate::slots::Slots;
+use crate::storage::{Mode, Positions};
 use crate::wire::{DIRECTORY, FORMAT, HEADER_BYTES, MATERIALS};
 
 mod error;
@@ -39,19 +40,52 @@ pub enum PacketSize {
 pub struct EncodeOptions {
     /// How many vertices each packet brings. The first one always brings the whole base, each at least one.
     pub packets: PacketSize,
+    /// How packets are stored.
+    pub mode: Mode,
+    /// How positions are stored.
+    pub positions: Positions,
+    /// Bits of each of the two components of a coded normal, 4 to 16; without effect where normals are not coded.
+    pub normal_bits: u8,
+    /// Bits of each component of coded texture coordinates, 4 to 16; without effect where they are not coded.
+    pub uv_bits: u8,
 }
 
 impl EncodeOptions {
-    /// The defaults: 256 vertices, then 30 % more with each packet, but at most 5,000 at once.
+    /// The defaults: raw packets of 256 vertices, then 30 % more with each packet, but at most 5,000 at once; positions as
+    /// given; 10 bits for coded normals, 12 for coded texture coordinates.
     #[must_use]
     pub const fn new() -> Self {
-        Self { packets: PacketSize::Growing { first: 256, percent: 30, most: 5000 } }
+        Self {
+            packets: PacketSize::Growing { first: 256, percent: 30, most: 5000 },
+            mode: Mode::Raw,
+            positions: Positions::F32,
+            normal_bits: 10,
+            uv_bits: 12,
+        }
+    }
+
+    /// Whether every option has a value that can be written.
+    fn check(&self) -> Result<(), EncodeError> {
+        let fail = |option| Err(EncodeError::Option { option });
+        if self.mode != Mode::Raw {
+            return fail("mode");
+        }
+        if !self.positions.exists() || self.positions != Positions::F32 {
+            return fail("positions");
+        }
+        if !PARAMETER_BITS.contains(&self.normal_bits) {
+            return fail("normal_bits");
+        }
+        if !PARAMETER_BITS.contains(&self.uv_bits) {
+            return fail("uv_bits");
+        }
+        Ok(())
     }
 
     /// Packets of that many vertices each.
     #[must_use]
     pub const fn fixed(vertices: u32) -> Self {
-        Self { packets: PacketSize::Fixed(vertices) }
+        Self { packets: PacketSize::Fixed(vertices), ..Self::new() }
     }
 }
 
@@ -83,6 +117,7 @@ impl PacketSize {
 /// [`EncodeError`] names what cannot be written and where.
 pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>, EncodeError> {
     error::check(mesh)?;
+    options.check()?;
     let writer = Writer::new(mesh);
     let names = write_names(&mesh.material_names).ok_or(EncodeError::MaterialName)?;
 
@@ -250,9 +285,14 @@ impl<'a> Writer<'a> {
             wedge_count: mesh.wedges.len() as u32,
             face_count: self.faces.len() as u32,
             base_vertices: mesh.base_vertices,
+            mode: Mode::Raw,
+            positions: Positions::F32,
             attributes: self.attributes,
             origin: mesh.origin,
             bounds,
+            normal_bits: 0,
+            uv_bits: 0,
+            uv_bounds: [[0.0; 2]; 2],
             packets,
         }
     }

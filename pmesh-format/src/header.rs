@@ -13,10 +13,13 @@ use zerocopy::{FromBytes, IntoBytes};
 use crate::attributes::Attributes;
 use crate::code::codes;
 use crate::limits::{Limits, MAX_COUNT};
+use crate::storage::{Mode, Positions};
 use crate::wire::{
-    DIRECTORY, ENTRY_BYTES, Entry, FORMAT, HEADER_BYTES, MODE_RAW, POSITIONS_F32, PacketCounts, PacketLayout,
-    Specific, at,
+    DIRECTORY, ENTRY_BYTES, Entry, FORMAT, HEADER_BYTES, PacketCounts, PacketLayout, Specific, at,
 };
+
+/// Bits that coded normals and texture coordinates may have (PMESH-HDR-08).
+pub(crate) const PARAMETER_BITS: RangeInclusive<u8> = 4..=16;
 
 /// A header and a packet directory that have been read and checked, or that an encoder is about to write. The default is
 /// that of no file at all.
@@ -43,12 +46,22 @@ pub struct Header {
     pub face_count: u32,
     /// Vertices of the coarsest level; 0 only if there are no vertices.
     pub base_vertices: u32,
+    /// How packets are stored.
+    pub mode: Mode,
+    /// How positions are stored.
+    pub positions: Positions,
     /// Which arrays the file has.
     pub attributes: Attributes,
     /// What must be added to each position \[m\].
     pub origin: [f64; 3],
     /// The least and the greatest coordinates of all positions, relative to the origin \[m\].
     pub bounds: [[f32; 3]; 2],
+    /// Bits of each of the two components of a coded normal; 0 if normals are not coded.
+    pub normal_bits: u8,
+    /// Bits of each component of coded texture coordinates; 0 if they are not coded.
+    pub uv_bits: u8,
+    /// The least and the greatest texture coordinates, between which coded ones are quantised; 0 if they are not coded.
+    pub uv_bounds: [[f32; 2]; 2],
     /// The packets, in order.
     pub packets: Vec<PacketEntry>,
 }
@@ -123,22 +136,28 @@ impl Header {
             wedge_count: wire.wedge_count.get(),
             face_count: wire.face_count.get(),
             base_vertices: wire.base_vertices.get(),
+            // Judged below, in their turn.
+            mode: Mode::from_id(wire.mode).unwrap_or_default(),
+            positions: Positions::from_id(wire.positions).unwrap_or_default(),
             attributes: Attributes::from_bits(wire.attributes.get())
                 .ok_or(fail(ivg_wire::codes::RESERVED, at::ATTRIBUTES))?,
             origin: wire.origin.map(|x| x.get()),
             bounds: [wire.bounds_min.map(|x| x.get()), wire.bounds_max.map(|x| x.get())],
+            normal_bits: wire.normal_bits,
+            uv_bits: wire.uv_bits,
+            uv_bounds: [wire.uv_min.map(|x| x.get()), wire.uv_max.map(|x| x.get())],
             packets: Vec::new(),
         };
         let packets = wire.packet_count.get();
         header.check_counts(packets)?;
-        match wire.mode {
-            0 => return Err(fail(codes::MODE_FORBIDDEN, at::MODE)),
-            MODE_RAW => {}
+        match Mode::from_id(wire.mode) {
+            Some(Mode::Raw) => {}
+            _ if wire.mode == 0 => return Err(fail(codes::MODE_FORBIDDEN, at::MODE)),
             _ => return Err(fail(codes::MODE_UNKNOWN, at::MODE)),
         }
-        match wire.positions {
-            0 => return Err(fail(codes::POSITIONS_FORBIDDEN, at::POSITIONS)),
-            POSITIONS_F32 => {}
+        match Positions::from_id(wire.positions) {
+            Some(Positions::F32) => {}
+            _ if wire.positions == 0 => return Err(fail(codes::POSITIONS_FORBIDDEN, at::POSITIONS)),
             _ => return Err(fail(codes::POSITIONS_UNKNOWN, at::POSITIONS)),
         }
         if !header.origin.iter().all(|x| x.is_finite()) {
@@ -151,6 +170,13 @@ impl Header {
         if low.iter().zip(&high).any(|(low, high)| !(high.is_finite() && low <= high)) {
             return Err(fail(codes::BOUNDS, at::BOUNDS_MAX));
         }
+        if wire.reserved.get() != 0 {
+            return Err(fail(ivg_wire::codes::RESERVED, at::RESERVED));
+        }
+        if wire.reserved_end.get() != 0 {
+            return Err(fail(ivg_wire::codes::RESERVED, at::RESERVED_END));
+        }
+        header.check_parameters()?;
         let greatest = header.vertex_count.max(header.wedge_count).max(header.face_count);
         if greatest > limits.counts {
             return Err(fail(codes::LIMIT_COUNTS, at::VERTEX_COUNT));
@@ -182,6 +208,28 @@ impl Header {
         let splits = vertex_count.saturating_sub(base_vertices);
         if packets > splits.saturating_add(1) || (packets == 0) != (vertex_count == 0) {
             return Err(fail(codes::COUNTS, at::PACKET_COUNT));
+        }
+        Ok(())
+    }
+
+    /// Checks what coded attributes are quantised with (PMESH-HDR-08).
+    fn check_parameters(&self) -> Result<(), Error> {
+        let coded = self.mode == Mode::Coded;
+        let fits = |bits: u8, coded: bool| if coded { PARAMETER_BITS.contains(&bits) } else { bits == 0 };
+        if !fits(self.normal_bits, coded && self.attributes.normals) {
+            return Err(fail(codes::PARAMETERS, at::NORMAL_BITS));
+        }
+        let uvs = coded && self.attributes.uvs;
+        if !fits(self.uv_bits, uvs) {
+            return Err(fail(codes::PARAMETERS, at::UV_BITS));
+        }
+        let [low, high] = self.uv_bounds;
+        if !low.iter().all(|x| x.is_finite() && (uvs || *x == 0.0)) {
+            return Err(fail(codes::PARAMETERS, at::UV_MIN));
+        }
+        let inside = |(low, high): (&f32, &f32)| high.is_finite() && low <= high && (uvs || *high == 0.0);
+        if !low.iter().zip(&high).all(inside) {
+            return Err(fail(codes::PARAMETERS, at::UV_MAX));
         }
         Ok(())
     }
@@ -334,18 +382,25 @@ impl Header {
             file_bytes: self.file_bytes,
         };
         let [low, high] = self.bounds;
+        let [uv_low, uv_high] = self.uv_bounds;
         let specific = Specific {
             vertex_count: self.vertex_count.into(),
             wedge_count: self.wedge_count.into(),
             face_count: self.face_count.into(),
             base_vertices: self.base_vertices.into(),
             packet_count: self.packet_count().into(),
-            mode: MODE_RAW,
-            positions: POSITIONS_F32,
+            mode: self.mode.id(),
+            positions: self.positions.id(),
             attributes: self.attributes.bits().into(),
             origin: self.origin.map(Into::into),
             bounds_min: low.map(Into::into),
             bounds_max: high.map(Into::into),
+            normal_bits: self.normal_bits,
+            uv_bits: self.uv_bits,
+            reserved: 0.into(),
+            uv_min: uv_low.map(Into::into),
+            uv_max: uv_high.map(Into::into),
+            reserved_end: 0.into(),
         };
         let mut bytes = [0; HEADER_BYTES];
         for (to, from) in bytes.iter_mut().zip(common.to_bytes(&FORMAT).iter().chain(specific.as_bytes())) {

@@ -6,7 +6,7 @@
 //! every byte and every error; clause ids such as `PMESH-SWI-01` are theirs.
 //!
 //! ```text
-//! header 128 ─ chunks: PDIR (20 a packet), MTRL ─ packet 0 (with the base) ─ packet 1 … packet P−1 ─ end 20
+//! header 152 ─ chunks: PDIR (20 a packet), MTRL ─ packet 0 (with the base) ─ packet 1 … packet P−1 ─ end 20
 //! ```
 //!
 //! Besides positions (12 bytes a vertex), attributes (on wedges) and faces (12 bytes each) a packet holds what makes it a
@@ -62,6 +62,7 @@ mod packet;
 mod progressive;
 mod replay;
 mod slots;
+mod storage;
 #[cfg(test)]
 mod tests;
 mod wire;
@@ -78,4 +79,5 @@ pub use mesh::{IndexedMesh, LevelFault, Wedges, check_level};
 pub use packet::Packet;
 pub use progressive::ProgressiveMesh;
 pub use replay::{LevelChange, LevelError, Replay};
+pub use storage::{Mode, Positions};
 pub use wire::{DIRECTORY, HEADER_BYTES, MAJOR, MATERIALS};

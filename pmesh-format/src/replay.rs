@@ -19,6 +19,7 @@ use crate::packet::{Bits, Packet, code_bits};
 use crate::slots::Slots;
 use crate::wire::MATERIALS;
 
+mod grow;
 mod load;
 
 /// A mesh that can be shown at any number of vertices that has arrived.
@@ -365,7 +366,7 @@ impl Replay {
         let vertex = self.level;
         self.level += 1;
         for face in self.faces_at(vertex)..self.faces_at(vertex + 1) {
-            self.introduce(face);
+            self.enter(face);
         }
         self.compact_touched();
     }
@@ -398,7 +399,7 @@ impl Replay {
     }
 
     /// Puts the slots of a new face into the lists of its vertices.
-    fn introduce(&mut self, face: u32) {
+    fn enter(&mut self, face: u32) {
         for (corner, wedge) in (0..).zip(self.corners[face as usize]) {
             let vertex = self.vertex_of(wedge);
             self.slots.push(vertex, 3 * face + corner);

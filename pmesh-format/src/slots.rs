@@ -34,6 +34,15 @@ impl Slots {
         self.heads[vertex as usize] = self.next[head as usize];
     }
 
+    /// Shows the slots of `vertex`, descending.
+    pub(crate) fn visit(&self, vertex: u32, mut visit: impl FnMut(u32)) {
+        let mut slot = self.heads[vertex as usize];
+        while slot != NONE {
+            visit(slot);
+            slot = self.next[slot as usize];
+        }
+    }
+
     /// Moves the slots of `parent` for which `moves` says so to `child`, whose list is empty; both stay in order.
     ///
     /// # Errors

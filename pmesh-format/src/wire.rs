@@ -18,7 +18,7 @@ pub const MAJOR: u16 = 0;
 pub(crate) const FORMAT: FormatId = FormatId {
     magic: *b"\x89PMS\r\n\x1A\n",
     major: MAJOR,
-    minor: 1,
+    minor: 2,
     header_bytes: HEADER_BYTES as u32,
     features: 0,
 };
@@ -26,13 +26,7 @@ pub(crate) const FORMAT: FormatId = FormatId {
 /// Bytes of the whole header.
 pub const HEADER_BYTES: usize = COMMON_HEADER_BYTES + size_of::<Specific>();
 
-const _: () = assert!(HEADER_BYTES == 128 && HEADER_BYTES.is_multiple_of(8));
-
-/// The mode of packets that are arrays as graphics processors take them (PMESH-HDR-03).
-pub(crate) const MODE_RAW: u8 = 1;
-
-/// Positions as three binary32 numbers (PMESH-HDR-04).
-pub(crate) const POSITIONS_F32: u8 = 1;
+const _: () = assert!(HEADER_BYTES == 152 && HEADER_BYTES.is_multiple_of(8));
 
 /// Type of the chunk that holds the packet directory.
 pub const DIRECTORY: ChunkKind = ChunkKind(*b"PDIR");
@@ -55,6 +49,12 @@ pub(crate) struct Specific {
     pub(crate) origin: [F64; 3],
     pub(crate) bounds_min: [F32; 3],
     pub(crate) bounds_max: [F32; 3],
+    pub(crate) normal_bits: u8,
+    pub(crate) uv_bits: u8,
+    pub(crate) reserved: U16,
+    pub(crate) uv_min: [F32; 2],
+    pub(crate) uv_max: [F32; 2],
+    pub(crate) reserved_end: U32,
 }
 
 /// One entry of the packet directory.
@@ -99,6 +99,12 @@ pub(crate) mod at {
         ORIGIN = origin;
         BOUNDS_MIN = bounds_min;
         BOUNDS_MAX = bounds_max;
+        NORMAL_BITS = normal_bits;
+        UV_BITS = uv_bits;
+        RESERVED = reserved;
+        UV_MIN = uv_min;
+        UV_MAX = uv_max;
+        RESERVED_END = reserved_end;
     }
 
     offsets! { ENTRY, Entry, 0;

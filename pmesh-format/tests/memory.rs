@@ -35,15 +35,15 @@ fn strip(vertices: u32, seams: bool) -> ProgressiveMesh {
     }
 }
 
-/// A header of 128 bytes that declares the most that the format holds, then a few bytes of a directory.
+/// A header of 152 bytes that declares the most that the format holds, then a few bytes of a directory.
 fn greedy() -> Vec<u8> {
     let format =
-        FormatId { magic: *b"\x89PMS\r\n\x1A\n", major: 0, minor: 1, header_bytes: 128, features: 0 };
+        FormatId { magic: *b"\x89PMS\r\n\x1A\n", major: 0, minor: 2, header_bytes: 152, features: 0 };
     let common = CommonHeader {
-        minor: 1,
+        minor: 2,
         required_features: 0,
         optional_features: 0,
-        header_bytes: 128,
+        header_bytes: 152,
         content_id: ContentId(7),
         data_offset: 1 << 20,
         file_bytes: 1 << 40,
@@ -53,7 +53,7 @@ fn greedy() -> Vec<u8> {
         file.extend(count.to_le_bytes());
     }
     file.extend([1, 1, 0, 0]);
-    file.extend([0; 48]);
+    file.extend([0; 72]);
     seal_header(&mut file);
     file.extend(b"PDIR\x01\0\0\0");
     file.extend(((1u64 << 20) - 300).to_le_bytes());

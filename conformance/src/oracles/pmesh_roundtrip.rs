@@ -50,7 +50,7 @@ fn choose_options(choices: &mut Choices<'_>) -> EncodeOptions {
         },
         _ => return EncodeOptions::default(),
     };
-    EncodeOptions { packets }
+    EncodeOptions { packets, ..EncodeOptions::new() }
 }
 
 /// Any mesh whose tables are valid; most are no surface.

@@ -24,7 +24,8 @@ mod at {
     pub(super) const ORIGIN: usize = 80;
     pub(super) const BOUNDS_MIN: usize = 104;
     pub(super) const BOUNDS_MAX: usize = 116;
-    pub(super) const END: usize = 128;
+    pub(super) const NORMAL_BITS: usize = 128;
+    pub(super) const END: usize = 152;
 }
 
 /// Places of fields in an entry of the directory, and its length.

@@ -54,6 +54,11 @@ pub enum EncodeError {
         /// The face.
         face: usize,
     },
+    /// An option has a value that cannot be written.
+    Option {
+        /// Which option.
+        option: &'static str,
+    },
     /// An error is negative or rises.
     ErrorEstimate {
         /// Its index, counted from the base.
@@ -93,6 +98,7 @@ impl core::fmt::Display for EncodeError {
                 write!(f, "face {face} names a wedge that is not there, or a vertex twice")
             }
             Self::ErrorEstimate { index } => write!(f, "error estimate {index} is negative or rises"),
+            Self::Option { option } => write!(f, "option {option} has a value that cannot be written"),
             Self::MaterialName => f.write_str("the name of a material is longer than 65,535 bytes"),
             Self::ChunkSize => {
                 f.write_str("material names or packet directory are longer than a chunk may be")

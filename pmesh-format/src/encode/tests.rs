@@ -42,7 +42,7 @@ fn the_content_id_differs_when_anything_differs() {
 fn packets_grow_as_asked() {
     let mesh = random_mesh(6, Kind { vertices: 100, seams: false, materials: false });
     let ends = |packets: PacketSize| -> Vec<u32> {
-        let header = header_of(&encode(&mesh, &EncodeOptions { packets }).unwrap());
+        let header = header_of(&encode(&mesh, &EncodeOptions { packets, ..EncodeOptions::new() }).unwrap());
         header.packets.iter().map(|packet| packet.vertices.end).collect()
     };
     assert_eq!(ends(PacketSize::Fixed(40)), [40, 80, 100]);

@@ -42,7 +42,7 @@ fn every_defect_of_header_and_directory_has_its_code_and_its_place() {
     fn put32(bytes: &mut [u8], at: usize, value: u32) {
         bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
     }
-    // Offsets in `specific` are those of the header less 56; the directory's payload begins at byte 144.
+    // Offsets in `specific` are those of the header less 56; the directory's payload begins at byte 168.
     let cases: Vec<(&str, u64, Spoil)> = vec![
         ("COUNTS", 56, |p| put32(&mut p.specific, 0, MAX_COUNT + 1)),
         ("COUNTS", 60, |p| put32(&mut p.specific, 4, 29)),
@@ -65,36 +65,42 @@ fn every_defect_of_header_and_directory_has_its_code_and_its_place() {
         ("BOUNDS", 104, |p| p.specific[48..52].copy_from_slice(&f32::NEG_INFINITY.to_le_bytes())),
         ("BOUNDS", 116, |p| p.specific[60..64].copy_from_slice(&f32::NAN.to_le_bytes())),
         ("BOUNDS", 116, |p| p.specific[60..64].copy_from_slice(&(-5.0f32).to_le_bytes())),
-        ("DIRECTORY_MISSING", 128, |p| p.chunks.swap(0, 1)),
-        ("DIRECTORY_MISSING", 128, |p| p.chunks.clear()),
-        ("CHUNK_REPEATED", 248, |p| p.chunks.insert(1, p.chunks[0].clone())),
-        ("CHUNK_REPEATED", 288, |p| p.chunks.push(p.chunks[1].clone())),
-        ("DIRECTORY_LENGTH", 144, |p| {
+        ("RESERVED", 130, |p| p.specific[75] = 1),
+        ("RESERVED", 148, |p| p.specific[95] = 1),
+        ("PARAMETERS", 128, |p| p.specific[72] = 10),
+        ("PARAMETERS", 129, |p| p.specific[73] = 12),
+        ("PARAMETERS", 132, |p| p.specific[76..80].copy_from_slice(&(-1.0f32).to_le_bytes())),
+        ("PARAMETERS", 140, |p| p.specific[88..92].copy_from_slice(&1.0f32.to_le_bytes())),
+        ("DIRECTORY_MISSING", 152, |p| p.chunks.swap(0, 1)),
+        ("DIRECTORY_MISSING", 152, |p| p.chunks.clear()),
+        ("CHUNK_REPEATED", 272, |p| p.chunks.insert(1, p.chunks[0].clone())),
+        ("CHUNK_REPEATED", 312, |p| p.chunks.push(p.chunks[1].clone())),
+        ("DIRECTORY_LENGTH", 168, |p| {
             p.directory().pop();
         }),
-        ("DIRECTORY_LENGTH", 144, |p| p.directory().truncate(80)),
-        ("DIRECTORY_COUNTS", 164, |p| put32(p.directory(), 20, 7)),
-        ("DIRECTORY_COUNTS", 164, |p| put32(p.directory(), 20, 31)),
-        ("DIRECTORY_COUNTS", 144, |p| put32(p.directory(), 0, 0)),
-        ("DIRECTORY_COUNTS", 148, |p| put32(p.directory(), 4, 6)),
-        ("DIRECTORY_COUNTS", 148, |p| put32(p.directory(), 4, 1000)),
-        ("DIRECTORY_COUNTS", 172, |p| put32(p.directory(), 28, 0)),
-        ("DIRECTORY_COUNTS", 172, |p| put32(p.directory(), 28, 1000)),
+        ("DIRECTORY_LENGTH", 168, |p| p.directory().truncate(80)),
+        ("DIRECTORY_COUNTS", 188, |p| put32(p.directory(), 20, 7)),
+        ("DIRECTORY_COUNTS", 188, |p| put32(p.directory(), 20, 31)),
+        ("DIRECTORY_COUNTS", 168, |p| put32(p.directory(), 0, 0)),
+        ("DIRECTORY_COUNTS", 172, |p| put32(p.directory(), 4, 6)),
+        ("DIRECTORY_COUNTS", 172, |p| put32(p.directory(), 4, 1000)),
+        ("DIRECTORY_COUNTS", 196, |p| put32(p.directory(), 28, 0)),
+        ("DIRECTORY_COUNTS", 196, |p| put32(p.directory(), 28, 1000)),
         // The last packet ends before the last vertex.
-        ("DIRECTORY_COUNTS", 224, |p| put32(p.directory(), 80, 29)),
-        ("DIRECTORY_BYTES", 156, |p| put32(p.directory(), 12, 100)),
-        ("DIRECTORY_BYTES", 156, |p| put32(p.directory(), 12, u32::MAX)),
-        ("LIMIT_RECORD_BYTES", 156, |p| put32(p.directory(), 12, 0x7000_0000)),
-        ("DIRECTORY_ERROR", 160, |p| p.directory()[16..20].copy_from_slice(&(-1.0f32).to_le_bytes())),
-        ("DIRECTORY_ERROR", 160, |p| p.directory()[16..20].copy_from_slice(&f32::INFINITY.to_le_bytes())),
-        ("DIRECTORY_ERROR", 180, |p| p.directory()[36..40].copy_from_slice(&2.0f32.to_le_bytes())),
-        ("MATERIAL_NAMES", 282, |p| {
+        ("DIRECTORY_COUNTS", 248, |p| put32(p.directory(), 80, 29)),
+        ("DIRECTORY_BYTES", 180, |p| put32(p.directory(), 12, 100)),
+        ("DIRECTORY_BYTES", 180, |p| put32(p.directory(), 12, u32::MAX)),
+        ("LIMIT_RECORD_BYTES", 180, |p| put32(p.directory(), 12, 0x7000_0000)),
+        ("DIRECTORY_ERROR", 184, |p| p.directory()[16..20].copy_from_slice(&(-1.0f32).to_le_bytes())),
+        ("DIRECTORY_ERROR", 184, |p| p.directory()[16..20].copy_from_slice(&f32::INFINITY.to_le_bytes())),
+        ("DIRECTORY_ERROR", 204, |p| p.directory()[36..40].copy_from_slice(&2.0f32.to_le_bytes())),
+        ("MATERIAL_NAMES", 306, |p| {
             p.chunks[1].2.pop();
         }),
-        ("MATERIAL_NAMES", 266, |p| p.chunks[1].2[2] = 0xFF),
-        ("CHUNK_CRITICAL", 288, |p| p.chunks.push((ivg_wire::ChunkKind(*b"XYZW"), true, vec![]))),
-        ("RESERVED", 292, |p| p.packets[0].1 = 1),
-        ("RECORD_ID", 288, |p| p.packets[0].0 = 1),
+        ("MATERIAL_NAMES", 290, |p| p.chunks[1].2[2] = 0xFF),
+        ("CHUNK_CRITICAL", 312, |p| p.chunks.push((ivg_wire::ChunkKind(*b"XYZW"), true, vec![]))),
+        ("RESERVED", 316, |p| p.packets[0].1 = 1),
+        ("RECORD_ID", 312, |p| p.packets[0].0 = 1),
     ];
     let mut seen = BTreeSet::new();
     for (number, (name, offset, spoil)) in cases.into_iter().enumerate() {

@@ -155,7 +155,7 @@ impl Replay {
             self.level = self.base();
             first_split = self.base();
             for face in 0..self.base_faces {
-                self.introduce(face);
+                self.enter(face);
             }
         }
         let bytes = &payload[codes_at..];

@@ -59,7 +59,7 @@ quickcheck! {
             PacketSize::Fixed(1000),
             PacketSize::Growing { first: 2, percent: 30, most: 9 },
         ];
-        let mut replays = sizes.map(|packets| replay_all(&encode(&mesh, &EncodeOptions { packets }).unwrap()));
+        let mut replays = sizes.map(|packets| replay_all(&encode(&mesh, &EncodeOptions { packets, ..EncodeOptions::new() }).unwrap()));
         (mesh.base_vertices..=40).all(|level| {
             let meshes = replays.each_mut().map(|replay| {
                 replay.set_level(level).unwrap();

@@ -2,6 +2,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::*;
+use crate::storage::{Mode, Positions};
 
 fn rows(key: &str) -> Vec<toml::Table> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/tables/pmesh.toml");
@@ -92,12 +93,28 @@ fn attribute_bits_are_those_of_the_specification() {
 
 #[test]
 fn registries_name_what_this_crate_reads() {
-    for (key, described) in [("modes", MODE_RAW), ("positions", POSITIONS_F32)] {
-        for row in rows(key) {
-            let is_described = row["status"].as_str() == Some("described");
-            assert_eq!(is_described, row["id"].as_integer() == Some(described.into()), "{key}: {row:?}");
+    let name = |key: &str, id: u8| match key {
+        "modes" => Mode::from_id(id).map(Mode::name),
+        _ => Positions::from_id(id).map(Positions::name),
+    };
+    for key in ["modes", "positions"] {
+        let rows = rows(key);
+        for (id, row) in (0u8..).zip(&rows) {
+            assert_eq!(row["id"].as_integer(), Some(id.into()));
+            let expected =
+                (row["status"].as_str() != Some("forbidden")).then(|| row["name"].as_str().unwrap());
+            assert_eq!(name(key, id), expected, "{key}: {row:?}");
         }
+        assert_eq!(name(key, rows.len() as u8), None, "{key}: the next is reserved");
     }
+    assert!(
+        Mode::ALL.iter().all(|&m| Mode::from_name(m.name()) == Some(m) && Mode::from_id(m.id()) == Some(m))
+    );
+    for &positions in Positions::ALL {
+        assert_eq!(Positions::from_name(positions.name()), Some(positions));
+        assert_eq!(Positions::from_id(positions.id()), Some(positions));
+    }
+    assert_eq!((Positions::Quantised(9).id(), Positions::Quantised(17).name()), (0, "-"));
     let chunks = rows("chunks");
     let ours = [(DIRECTORY, true), (MATERIALS, false)];
     assert_eq!(chunks.len(), ours.len());

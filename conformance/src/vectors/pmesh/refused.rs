@@ -62,6 +62,13 @@ fn container(file: &[u8]) -> Vec<Refused> {
         ),
         (
             o,
+            "parameters",
+            mesh::PARAMETERS,
+            in_header(file, at::NORMAL_BITS, &[10]),
+            "bits of coded normals in a file without them",
+        ),
+        (
+            o,
             "file-bytes",
             wire::FILE_BYTES,
             in_header(file, FILE_BYTES_AT, &longer),
@@ -187,7 +194,7 @@ fn headers(file: &[u8]) -> Vec<Refused> {
             edited(at::BOUNDS_MAX + 4, &(-2.0f32).to_le_bytes()),
             "bounds that are inside out",
         ),
-        (o, "limit-counts", mesh::LIMIT_COUNTS, declared(1 << 30), "1,073,741,824 vertices in 128 bytes"),
+        (o, "limit-counts", mesh::LIMIT_COUNTS, declared(1 << 30), "1,073,741,824 vertices in 152 bytes"),
     ]
 }
 
