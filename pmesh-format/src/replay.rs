@@ -20,6 +20,7 @@ use crate::slots::Slots;
 use crate::wire::MATERIALS;
 
 mod grow;
+mod levels;
 mod load;
 
 /// A mesh that can be shown at any number of vertices that has arrived.

@@ -1,0 +1,44 @@
+//! Which level to show: by what it may cost in accuracy or in faces.
+
+use crate::header::Header;
+
+use super::Replay;
+
+impl Header {
+    /// The coarsest level whose stored error is at most `error` \[m\] (PMESH-DIR-05); the finest, which has none, where that is
+    /// less than any, negative, or NaN. 0 for a mesh without vertices.
+    ///
+    /// A viewer that wants no error of more than a number of pixels passes that number times the size of a pixel at the
+    /// mesh's nearest point.
+    #[must_use]
+    pub fn level_of_error(&self, error: f32) -> u32 {
+        // Errors never rise from packet to packet.
+        let exceeds = |stored: f32| stored.partial_cmp(&error).is_none_or(core::cmp::Ordering::is_gt);
+        let packet = self.packets.partition_point(|entry| exceeds(entry.error));
+        match self.packets.get(packet) {
+            Some(entry) => entry.vertices.start.saturating_add(1).max(self.base_vertices),
+            None => self.vertex_count,
+        }
+    }
+}
+
+impl Replay {
+    /// The coarsest level whose stored error is at most `error` \[m\], or the finest that has arrived if that is coarser: see
+    /// [`Header::level_of_error`]. `None` before the first packet.
+    #[must_use]
+    pub fn level_of_error(&self, error: f32) -> Option<u32> {
+        self.levels().map(|levels| self.header.level_of_error(error).min(*levels.end()))
+    }
+
+    /// The finest level that has arrived and has at most `faces` faces; the coarsest where even that has more. `None` before
+    /// the first packet.
+    #[must_use]
+    pub fn level_of_faces(&self, faces: u32) -> Option<u32> {
+        // Every vertex adds its faces to those before it.
+        let splits = self.face_ends.partition_point(|&end| end <= faces) as u32;
+        self.levels().map(|levels| levels.start().saturating_add(splits).min(*levels.end()))
+    }
+}
+
+#[cfg(test)]
+mod tests;
