@@ -3,6 +3,7 @@
 use super::stream::{End, Seen, Transcript, transcribe};
 use super::{digest, pieces, slice};
 use crate::bounds::{Bound, Budget};
+use crate::reference::{Fault, Reference};
 use ivg_wire::{Error, Part, Verdict};
 use pmesh_format::{
     Decoder, Event, Header, LevelChange, Limits, Packet, Replay, Step, check, check_level, decode_all,
@@ -75,8 +76,17 @@ fn see_packet(packet: &Packet<'_>) -> u64 {
     digest((packet.index(), format!("{:?}", packet.entry()), packet.payload(), arrays))
 }
 
+/// Vertices times faces and wedges, at most, for the second reader, which goes through all of them for each vertex.
+const MOST_FOR_REFERENCE: u64 = 1 << 18;
+
+/// The second reader of a file's packets; `None` if they would keep it busy for long.
+pub(super) fn reference(header: &Header) -> Option<Reference<'_>> {
+    let things = u64::from(header.face_count) + u64::from(header.wedge_count);
+    (u64::from(header.vertex_count) * things <= MOST_FOR_REFERENCE).then(|| Reference::new(header))
+}
+
 /// Any bytes give events and a verdict, within the bounds on memory. Each packet, read alone by its range, is that of the
-/// stream. What has been accepted is a valid mesh at its level.
+/// stream, and what a second reader makes of it. What has been accepted is a valid mesh at its level.
 ///
 /// # Panics
 ///
@@ -97,22 +107,37 @@ pub fn pmesh_decode(data: &[u8]) {
     }
 }
 
-/// Reads each whole packet by its range and replays it; compares with what the stream said.
+/// Reads each whole packet by its range and replays it; compares with what the stream said, and with what the second reader says.
 fn packets_alone(data: &[u8], header: &Header, transcript: &Transcript) {
     let mut replay = Replay::new(header);
+    let mut reference = reference(header);
     let mut end = header.data_offset;
     for k in 0..header.packet_count() {
         let range = header.packet_range(k);
         assert_eq!(range.start, end, "packet {k} does not begin where the one before ends");
         end = range.end;
         let Some(bytes) = slice(data, range.start, range.end) else { return };
-        let alone: Result<LevelChange, Error> =
-            decode_packet(header, k, bytes).and_then(|packet| replay.apply(&packet));
+        let packet = decode_packet(header, k, bytes);
+        let judged = match (&packet, &mut reference) {
+            (Ok(packet), Some(reference)) => Some(reference.take(packet.payload())),
+            _ => None,
+        };
+        let alone: Result<LevelChange, Error> = packet.and_then(|packet| replay.apply(&packet));
+        if let Some(judged) = judged {
+            let found = alone.as_ref().map(drop).map_err(|error| Fault {
+                code: error.code(),
+                at: (error.offset().0 - range.start - RECORD_HEAD) as usize,
+            });
+            assert_eq!(judged, found, "packet {k}: the second reader judges otherwise");
+        }
         match (alone, transcript.end) {
             (Ok(_), _) if (k as usize) < transcript.records => {
                 let mesh = replay.mesh();
                 check_level(&mesh).unwrap_or_else(|fault| panic!("after packet {k}: {fault}"));
                 assert_eq!(mesh.positions.len() as u32, header.packets[k as usize].vertices.end);
+                if let Some(reference) = &reference {
+                    assert_eq!(reference.level(replay.level()), Some(mesh), "after packet {k}");
+                }
             }
             // Chunks between header and packets may be refused; whoever fetches packets alone does not read them.
             (_, End::Refused(error))
@@ -129,6 +154,9 @@ fn packets_alone(data: &[u8], header: &Header, transcript: &Transcript) {
     }
     assert_eq!(header.end_range(), end..header.file_bytes, "the end record does not end the file");
 }
+
+/// Bytes of a record before its payload.
+const RECORD_HEAD: u64 = 8;
 
 /// Any split of the bytes gives the same events, the same error, the same offset.
 ///

@@ -1,13 +1,17 @@
 //! What must hold of the levels of a `.pmesh`.
 
 use super::PIECE_CHOICES;
-use pmesh_format::{BufferedDecoder, IndexedMesh, LevelChange, Limits, Replay, check_level};
+use super::pmesh::reference;
+use crate::reference::Reference;
+use pmesh_format::{
+    BufferedDecoder, Header, IndexedMesh, LevelChange, Limits, Replay, check_level, decode_packet,
+};
 
 /// How many levels are visited.
 const VISITS: usize = 12;
 
-/// The mesh at a level does not depend on the way there, nor on how many packets have arrived; it is valid; and what a change of
-/// level reports is all that a copy of the index buffer needs.
+/// The mesh at a level does not depend on the way there, nor on how many packets have arrived; it is valid, and that of the second
+/// reader; and what a change of level reports is all that a copy of the index buffer needs.
 ///
 /// The last bytes of the input, which lie behind the file or in its end record, choose the levels.
 ///
@@ -20,6 +24,8 @@ pub fn pmesh_lod(data: &[u8]) {
     let levels = choices.iter().cycle().take(VISITS).map(|&choice| u32::from(choice));
 
     let packets = whole.packets();
+    let header = whole.header().clone();
+    let reference = referenced(data, &header, packets);
     let mut partial = Replay::default();
     let mut copy = Vec::new();
     let mut visit = |replay: &mut Replay, change: &LevelChange| {
@@ -29,6 +35,10 @@ pub fn pmesh_lod(data: &[u8]) {
         check_level(&mesh).unwrap_or_else(|fault| panic!("level {level}: {fault}"));
         assert_eq!(mesh.positions.len() as u32, level);
         assert_eq!(mesh, at_level(&mut whole, level), "level {level} depends on the way there");
+        if let Some(reference) = &reference {
+            let unnamed = IndexedMesh { material_names: Vec::new(), ..mesh };
+            assert_eq!(reference.level(level), Some(unnamed), "level {level} for the second reader");
+        }
     };
     feed(data, |event| {
         if partial.packets() == packets {
@@ -44,6 +54,18 @@ pub fn pmesh_lod(data: &[u8]) {
             visit(&mut partial, &change);
         }
     });
+}
+
+/// The second reader with the first packets of the file, which have been accepted; `None` if they are too many for it.
+fn referenced<'a>(data: &[u8], header: &'a Header, packets: u32) -> Option<Reference<'a>> {
+    let mut reference = reference(header)?;
+    for k in 0..packets {
+        let range = header.packet_range(k);
+        let packet = decode_packet(header, k, &data[range.start as usize..range.end as usize]);
+        let taken = reference.take(packet.expect("it was accepted before").payload());
+        assert_eq!(taken, Ok(()), "packet {k} is refused by the second reader");
+    }
+    Some(reference)
 }
 
 /// The mesh at a level, reached from below: from the coarsest level.

@@ -1,7 +1,7 @@
 //! Makes a file wrong in one place, and puts the checksums right again, so that the one mistake is what a reader finds.
 //! Positions are those of `spec/common.md`. All functions panic when the file is too short for what they do.
 
-use ivg_wire::{ChunkKind, ContentId, seal, seal_header, write_chunk};
+use ivg_wire::{ChunkKind, ContentId, seal, seal_header, write_chunk, write_record};
 use std::ops::Range;
 
 /// Length of the header, u32.
@@ -88,6 +88,20 @@ pub fn lengthened(file: &[u8], record: Range<usize>, at: usize, bytes: &[u8]) ->
     seal(&mut file[record.start..record.end + bytes.len()], content);
     let length = (file.len() as u64).to_le_bytes();
     let file = in_header(&file, FILE_BYTES_AT, &length);
+    let end = file.len() - END_BYTES..file.len();
+    in_envelope(&file, end.clone(), end.start + 8, &length)
+}
+
+/// Puts a record with this payload in place of the one that lies in `record`, and corrects what stands in header and end record of
+/// the length.
+#[must_use]
+pub fn replaced(file: &[u8], record: Range<usize>, id: u32, payload: &[u8]) -> Vec<u8> {
+    let content = content_id(file);
+    let mut bytes = file[..record.start].to_vec();
+    write_record(&mut bytes, id, 0, payload, content);
+    bytes.extend_from_slice(&file[record.end..]);
+    let length = (bytes.len() as u64).to_le_bytes();
+    let file = in_header(&bytes, FILE_BYTES_AT, &length);
     let end = file.len() - END_BYTES..file.len();
     in_envelope(&file, end.clone(), end.start + 8, &length)
 }

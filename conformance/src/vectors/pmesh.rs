@@ -42,6 +42,8 @@ mod entry {
 const RECORD_HEAD: usize = 8;
 const CHUNK_HEAD: usize = 16;
 
+const EMPTY: &str = "0001-empty";
+const EQUAL_PACKETS: &str = "0009-equal-packets";
 const OCTAHEDRON: &str = "0003-octahedron";
 const ONE_PACKET: &str = "0004-one-packet";
 const SEAM: &str = "0005-seam";
@@ -126,7 +128,7 @@ fn accepted() -> Vec<Vector> {
     };
     let octahedron = file(&octahedron(), 2);
     let list = [
-        ("0001-empty", file(&ProgressiveMesh::default(), 1), "no vertices: no packet"),
+        (EMPTY, file(&ProgressiveMesh::default(), 1), "no vertices: no packet"),
         ("0002-triangle", file(&triangle(), 1), "the coarsest level is the finest"),
         (OCTAHEDRON, octahedron.clone(), "three splits in three packets, an origin"),
         (
@@ -146,8 +148,16 @@ fn accepted() -> Vec<Vector> {
             "an ancillary chunk of unknown type is skipped",
         ),
         ("0008-newer-minor", newer_minor(&octahedron), "a newer minor version with a longer header"),
+        (EQUAL_PACKETS, equal_packets(1.0), "packets of equal length: one vertex each"),
     ];
     list.into_iter().map(|(name, bytes, why)| Vector::accepted(Format::Pmesh, name, bytes, why)).collect()
+}
+
+/// Four packets, of which the last three have equal lengths; files of different `size` have different ids.
+fn equal_packets(size: f32) -> Vec<u8> {
+    let mut mesh = points();
+    mesh.positions[5][2] = -size;
+    encode(&mesh, &EncodeOptions::fixed(1)).expect("a sound mesh")
 }
 
 /// Eight more bytes of header, as a later minor version may append.

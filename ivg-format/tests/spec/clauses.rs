@@ -87,20 +87,31 @@ fn check_test(name: &str) -> Result<(), String> {
     }
 }
 
+/// The clauses of all formats.
+fn all_clauses() -> Vec<toml::Table> {
+    ["clauses", "clauses-pmesh"].into_iter().flat_map(|table| rows(table, "clause")).collect()
+}
+
+/// The tests that a clause names.
+fn tests_of(clause: &toml::Table) -> Vec<&str> {
+    let tests = clause.get("tests").and_then(|tests| tests.as_array());
+    tests.into_iter().flatten().map(|test| test.as_str().unwrap()).collect()
+}
+
 #[test]
 fn every_clause_names_tests_that_exist() {
     let mut wrong = vec![];
     let mut untestable = vec![];
-    for row in rows("clauses", "clause") {
+    for row in all_clauses() {
         let id = row["id"].as_str().unwrap();
-        let tests = row.get("tests").map(|tests| tests.as_array().unwrap().as_slice()).unwrap_or_default();
+        let tests = tests_of(&row);
         match row.get("untestable").map(|why| why.as_str().unwrap()) {
             Some(why) if tests.is_empty() && why.len() > 20 => untestable.push(id.to_owned()),
             Some(_) => wrong.push(format!("{id}: has both tests and none, or no reason why there is none")),
             None if tests.is_empty() => wrong.push(format!("{id}: names no test")),
             None => {}
         }
-        let names: BTreeSet<&str> = tests.iter().map(|test| test.as_str().unwrap()).collect();
+        let names: BTreeSet<&str> = tests.iter().copied().collect();
         if names.len() != tests.len() {
             wrong.push(format!("{id}: names a test twice"));
         }
@@ -123,29 +134,54 @@ fn a_test_that_does_not_exist_is_found_missing() {
 }
 
 /// Codes of which no vector can be made, and why: as in `conformance/tests/vectors.rs`.
-const WITHOUT_VECTOR: [i64; 2] = [
+const WITHOUT_VECTOR: [i64; 3] = [
     // 65,536 chunks: our own limit comes first.
     109, // A record that is fetched alone: a file has no place for more bytes than a record has.
-    113,
+    113, // What a replay is given, not what a file is.
+    514,
 ];
 
 #[test]
 fn the_clause_of_every_error_names_a_vector_with_that_error() {
-    let clauses = rows("clauses", "clause");
+    let clauses = all_clauses();
     let mut wrong = vec![];
     for row in rows("errors", "error") {
         let (code, clause) = (row["code"].as_integer().unwrap(), row["clause"].as_str().unwrap());
-        let of_ivg = ["common", "ivg"].contains(&row["format"].as_str().unwrap());
-        if !of_ivg || row["verdict"].as_str() == Some("need-more") || WITHOUT_VECTOR.contains(&code) {
+        if row["verdict"].as_str() == Some("need-more") || WITHOUT_VECTOR.contains(&code) {
             continue;
         }
+        let format = if row["format"].as_str() == Some("pmesh") { "pmesh" } else { "ivg" };
         let clause = clauses.iter().find(|row| row["id"].as_str() == Some(clause)).expect("a clause");
-        let tests =
-            clause.get("tests").and_then(|tests| tests.as_array()).map(Vec::as_slice).unwrap_or_default();
-        let prefix = format!("conformance/vectors/ivg/x-{code}-");
-        if !tests.iter().any(|test| test.as_str().unwrap().starts_with(&prefix)) {
+        let prefix = format!("conformance/vectors/{format}/x-{code}-");
+        if !tests_of(clause).iter().any(|test| test.starts_with(&prefix)) {
             wrong.push(format!("{} names no vector for {code} {}", clause["id"], row["name"]));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Rules for readers of `.pmesh` for which no file with one defect can be made, and why.
+const WITHOUT_REFUSED_FILE: [(&str, &str); 7] = [
+    ("PMESH-HDR-01", "what is judged first shows in files with several defects"),
+    ("PMESH-PKT-03", "the same"),
+    ("PMESH-FACE-04", "the same"),
+    ("PMESH-LVL-01", "what a reader shows; the manifest has hashes of it"),
+    ("PMESH-LVL-05", "a recommendation"),
+    ("PMESH-LIM-03", "a reader refuses nothing for it"),
+    ("PMESH-LIM-04", "the same"),
+];
+
+#[test]
+fn every_rule_for_readers_of_meshes_names_a_file_to_refuse() {
+    let mut without = BTreeSet::new();
+    for clause in rows("clauses-pmesh", "clause") {
+        let for_readers =
+            clause["binds"].as_array().unwrap().iter().any(|party| party.as_str() == Some("reader"));
+        let names_one = tests_of(&clause).iter().any(|test| test.starts_with("conformance/vectors/pmesh/x-"));
+        if for_readers && !names_one {
+            without.insert(clause["id"].as_str().unwrap().to_owned());
+        }
+    }
+    let excepted: BTreeSet<String> = WITHOUT_REFUSED_FILE.iter().map(|(id, _)| (*id).to_owned()).collect();
+    assert_eq!(without, excepted);
 }

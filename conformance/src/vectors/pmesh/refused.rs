@@ -1,11 +1,13 @@
 //! Files of `.pmesh` to refuse.
 
 use super::super::edit::{
-    DATA_OFFSET_AT, FILE_BYTES_AT, HEADER_BYTES_AT, flipped, in_envelope, in_header, last_chunk, lengthened,
-    overwritten, read_u64, with_chunk,
+    DATA_OFFSET_AT, FILE_BYTES_AT, HEADER_BYTES_AT, flipped, in_envelope, in_header, last_chunk, overwritten,
+    read_u64, replaced, with_chunk,
 };
 use super::super::{Format, Refused, Vector};
-use super::{CHUNK_HEAD, OCTAHEDRON, ONE_PACKET, RECORD_HEAD, SEAM, at, entry, header, packet};
+use super::{
+    CHUNK_HEAD, EMPTY, EQUAL_PACKETS, OCTAHEDRON, ONE_PACKET, RECORD_HEAD, SEAM, at, entry, header, packet,
+};
 use ivg_wire::codes as wire;
 use pmesh_format::codes as mesh;
 
@@ -13,10 +15,12 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     let twin = |name: &str| &accepted.iter().find(|vector| vector.name == name).expect("a name").bytes[..];
     let octahedron = twin(OCTAHEDRON);
     let mut list = container(octahedron);
+    list.extend(records(twin(EQUAL_PACKETS)));
     list.extend(headers(octahedron));
+    list.extend(counts(twin(EMPTY), twin(SEAM)));
     list.extend(directory(octahedron));
     list.extend(names(twin(SEAM)));
-    list.extend(numbers(octahedron, twin(SEAM)));
+    list.extend(numbers(octahedron, twin(SEAM), twin(ONE_PACKET)));
     list.extend(topology(octahedron, twin(ONE_PACKET)));
     list.extend(wedges(twin(SEAM)));
     list.extend(switches(octahedron, twin(SEAM)));
@@ -128,6 +132,44 @@ fn container(file: &[u8]) -> Vec<Refused> {
     ]
 }
 
+/// Packets 1, 2 and 3 have one length, so that any of them fits where another belongs.
+fn records(file: &[u8]) -> Vec<Refused> {
+    let record = |file: &[u8], k: u32| file[packet(file, k)].to_vec();
+    let with = |k: u32, bytes: &[u8]| overwritten(file, packet(file, k).start, bytes);
+    let other = super::equal_packets(0.5);
+    let both = |bytes: &[u8], k: u32| overwritten(bytes, packet(file, k).start, &record(file, 3 - k));
+    vec![
+        (
+            EQUAL_PACKETS,
+            "packets-swapped",
+            wire::RECORD_ID,
+            both(&with(1, &record(file, 2)), 2),
+            "packets 1 and 2 in the other order",
+        ),
+        (
+            EQUAL_PACKETS,
+            "packet-repeated",
+            wire::RECORD_ID,
+            with(2, &record(file, 1)),
+            "packet 1 again where packet 2 belongs",
+        ),
+        (
+            EQUAL_PACKETS,
+            "packet-missing",
+            wire::RECORD_ID,
+            with(2, &record(file, 3)),
+            "packet 3 where packet 2 belongs",
+        ),
+        (
+            EQUAL_PACKETS,
+            "packet-of-another-file",
+            wire::RECORD_CHECKSUM,
+            with(2, &record(&other, 2)),
+            "packet 2 of another version of the mesh",
+        ),
+    ]
+}
+
 fn headers(file: &[u8]) -> Vec<Refused> {
     let o = OCTAHEDRON;
     let edited = |field: usize, bytes: &[u8]| in_header(file, field, bytes);
@@ -195,6 +237,25 @@ fn headers(file: &[u8]) -> Vec<Refused> {
             "bounds that are inside out",
         ),
         (o, "limit-counts", mesh::LIMIT_COUNTS, declared(1 << 30), "1,073,741,824 vertices in 152 bytes"),
+    ]
+}
+
+/// Counts that do not fit each other where there is no vertex, or where vertices have several wedges.
+fn counts(empty: &[u8], seam: &[u8]) -> Vec<Refused> {
+    let one = |field: usize| in_header(empty, field, &[1]);
+    let bare = in_header(seam, at::ATTRIBUTES, &[0x18]);
+    vec![
+        (EMPTY, "faces-alone", mesh::COUNTS, one(at::FACE_COUNT), "a face without vertices"),
+        (EMPTY, "base-alone", mesh::COUNTS, one(at::BASE_VERTICES), "a base without vertices"),
+        (EMPTY, "packets-alone", mesh::COUNTS, one(at::PACKET_COUNT), "a packet without vertices"),
+        (
+            SEAM,
+            "wedges-few",
+            mesh::COUNTS,
+            in_header(seam, at::WEDGE_COUNT, &[4]),
+            "fewer wedges than vertices",
+        ),
+        (SEAM, "wedges-bare", mesh::COUNTS, bare, "several wedges a vertex, and no attribute to differ in"),
     ]
 }
 
@@ -320,7 +381,23 @@ fn in_packet(file: &[u8], k: u32, at: usize, bytes: &[u8]) -> Vec<u8> {
     in_envelope(file, record.clone(), record.start + RECORD_HEAD + at, bytes)
 }
 
-fn numbers(file: &[u8], seam: &[u8]) -> Vec<Refused> {
+/// Gives packet `k` another payload, of any length, as directory, header and end record say.
+fn with_payload(file: &[u8], k: u32, payload: &[u8]) -> Vec<u8> {
+    let length = ivg_wire::chunk_len((header(file).packets.len() * entry::BYTES) as u64).expect("short");
+    let chunk = at::END..at::END + length as usize;
+    let at = chunk.start + CHUNK_HEAD + k as usize * entry::BYTES + entry::PAYLOAD_BYTES;
+    let record = packet(file, k);
+    let file = in_envelope(file, chunk, at, &(payload.len() as u32).to_le_bytes());
+    replaced(&file, record, k, payload)
+}
+
+/// The payload of packet `k`.
+fn payload(file: &[u8], k: u32) -> Vec<u8> {
+    let start = packet(file, k).start + RECORD_HEAD;
+    file[start..start + header(file).packets[k as usize].payload_bytes as usize].to_vec()
+}
+
+fn numbers(file: &[u8], seam: &[u8], coloured: &[u8]) -> Vec<Refused> {
     let position = |value: f32| in_packet(file, 0, 12, &value.to_le_bytes());
     // Behind the positions of three vertices.
     let normal = |value: f32| in_packet(seam, 0, 3 * 12, &value.to_le_bytes());
@@ -328,6 +405,14 @@ fn numbers(file: &[u8], seam: &[u8]) -> Vec<Refused> {
         (OCTAHEDRON, "position-nan", mesh::POSITION, position(f32::NAN), "a position that is no number"),
         (OCTAHEDRON, "position-outside", mesh::POSITION, position(1.5), "a position outside the bounds"),
         (SEAM, "normal-nan", mesh::ATTRIBUTE, normal(f32::NAN), "a normal that is no number"),
+        // Behind the positions of six vertices.
+        (
+            ONE_PACKET,
+            "uv-infinite",
+            mesh::ATTRIBUTE,
+            in_packet(coloured, 0, 6 * 12 + 4, &f32::INFINITY.to_le_bytes()),
+            "texture coordinates at infinity",
+        ),
     ]
 }
 
@@ -351,7 +436,23 @@ fn topology(file: &[u8], one_packet: &[u8]) -> Vec<Refused> {
             parent(1, own),
             "a vertex that collapses onto one that has not arrived",
         ),
-        (o, "corner", mesh::CORNER, corner(1, 0, u32::MAX), "a face that names a wedge that has not arrived"),
+        (
+            ONE_PACKET,
+            "parents-cycle",
+            mesh::PARENT,
+            // Behind positions, texture coordinates, colours and eight faces: two vertices that collapse onto each other.
+            in_packet(one_packet, 0, 6 * (12 + 8 + 4) + 8 * 12, &[4, 0, 0, 0, 3, 0, 0, 0]),
+            "two vertices that collapse onto each other",
+        ),
+        (o, "corner", mesh::CORNER, corner(1, 0, u32::MAX), "a face that names a wedge that does not exist"),
+        (o, "corner-later", mesh::CORNER, corner(1, 0, own), "a face that names a wedge of the next packet"),
+        (
+            o,
+            "face-before",
+            mesh::FACE_ORDER,
+            in_packet(file, last, corners(last), &[0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]),
+            "a face that the first packet should have brought",
+        ),
         (
             o,
             "face-twice",
@@ -401,7 +502,30 @@ fn wedges(file: &[u8]) -> Vec<Refused> {
     // The first packet has vertices of one, two and two wedges; the last has one vertex of two, and where these go.
     let count = varints(file, 0);
     let target = varints(file, 2) + 1;
+    let first = payload(file, 0);
+    let instead = |bytes: &[u8]| with_payload(file, 0, &[&first[..count], bytes].concat());
     vec![
+        (
+            SEAM,
+            "wedges-few",
+            mesh::WEDGE_COUNT,
+            in_packet(file, 0, count + 2, &[1]),
+            "fewer wedges than the packet has",
+        ),
+        (
+            SEAM,
+            "varint-33-bits",
+            mesh::VARINT,
+            instead(&[0x81, 0x80, 0x80, 0x80, 0x10]),
+            "a number of 33 bits",
+        ),
+        (
+            SEAM,
+            "varint-cut",
+            mesh::SWITCH_LENGTH,
+            instead(&[1, 2]),
+            "a payload that ends before the last number of wedges",
+        ),
         (
             SEAM,
             "wedges-many",
@@ -450,21 +574,15 @@ fn switches(file: &[u8], seam: &[u8]) -> Vec<Refused> {
             OCTAHEDRON,
             "switch-long",
             mesh::SWITCH_LENGTH,
-            longer_packet(file),
+            with_payload(file, last, &[&payload(file, last)[..], &[0; 4]].concat()),
             "bytes behind the switch codes",
         ),
+        (
+            OCTAHEDRON,
+            "switch-short",
+            mesh::SWITCH_LENGTH,
+            with_payload(file, last, &payload(file, last)[..end - 1]),
+            "a payload that ends before the switch codes",
+        ),
     ]
-}
-
-/// Adds four bytes to the last packet, as directory, header and end record say.
-fn longer_packet(file: &[u8]) -> Vec<u8> {
-    let header = header(file);
-    let k = header.packets.len() - 1;
-    let record = packet(file, k as u32);
-    let length = header.packets[k].payload_bytes;
-    let chunk = last_chunk(file, header.packets.len() * entry::BYTES);
-    let at = chunk.start + CHUNK_HEAD + k * entry::BYTES + entry::PAYLOAD_BYTES;
-    let payload_end = record.start + RECORD_HEAD + length as usize;
-    let file = in_envelope(file, chunk, at, &(length + 4).to_le_bytes());
-    lengthened(&file, record, payload_end, &[0; 4])
 }
