@@ -15,7 +15,7 @@ use crate::surface::{Ring, Surface};
 /// First the mesh is cleaned: vertices at one position are welded (unless `options` says otherwise), wedges with the same
 /// vertex and attributes merged; faces with a repeated vertex, repeated faces and vertices without a face dropped. Then
 /// vertices are collapsed until three are left (none, if there is no face). `progress` is told the share that is done,
-/// rising from 0 to 1.
+/// rising from 0 to 1; 0 a second time when the mesh is clean.
 ///
 /// # Errors
 /// A coordinate or attribute is NaN or infinite, an index is out of range, an array has a wrong length, or there is more
@@ -36,6 +36,7 @@ pub fn build(
     report.vertices = mesh.positions.len();
     report.wedges = mesh.wedges.len();
     report.faces = mesh.triangles.len();
+    progress(0.0);
     let order = find(surface, &mesh.wedges, options.cost, &mut report, progress);
     report.base_vertices = report.vertices - order.collapses.len();
     let result = arrange(mesh, &order);
