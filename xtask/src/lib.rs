@@ -3,15 +3,18 @@
 //! ```text
 //! cargo xtask test --install     everything that CI runs
 //! cargo xtask tidy               file lengths, left-over markers, README and CI agree
+//! cargo xtask peers mesh --meshes FOLDER     progressive meshes beside meshoptimizer and Draco
 //! ```
 //!
 //! [`steps`] is the list of what the suite does, in order; [`runner`] runs such a list and stops at the first failure;
-//! [`tools`] finds, or with `--install` fetches, what the machine lacks; [`tidy`] looks at the sources.
+//! [`tools`] finds, or with `--install` fetches, what the machine lacks; [`tidy`] looks at the sources; [`peers`] builds and
+//! calls the comparisons in `tools/peers`.
 
 #![forbid(unsafe_code)]
 
 pub mod fuzz;
 pub mod invocation;
+pub mod peers;
 pub mod runner;
 pub mod steps;
 pub mod tidy;

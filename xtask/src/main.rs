@@ -3,7 +3,9 @@
 #![forbid(unsafe_code)]
 
 use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
 use std::process::ExitCode;
+use xtask::peers::{self, Comparison, Request};
 use xtask::runner::{self, Context};
 use xtask::steps::{self, Selection};
 use xtask::{tidy, workspace_root};
@@ -22,6 +24,35 @@ enum Command {
     Test(TestOptions),
     /// Look at the sources: file lengths, left-over markers, machine paths, README and CI agree.
     Tidy,
+    /// Install peers from PyPI and crates.io, and print them and this project side by side. Needs Python 3 and the network.
+    #[command(subcommand)]
+    Peers(PeersCommand),
+}
+
+#[derive(Debug, Subcommand)]
+enum PeersCommand {
+    /// Tables of bytes, speed and distances, and which targets are met; 15 minutes for all meshes.
+    Mesh(PeersOptions),
+    /// The dragon at 0.2 % and 1 % of its faces as pictures, beside meshoptimizer's.
+    Picture(PeersOptions),
+    /// Check 200 random levels of each mesh, of raw and of coded files.
+    Levels(PeersOptions),
+}
+
+#[derive(Debug, Args)]
+struct PeersOptions {
+    /// Folder with the meshes, which are not part of the project; what is missing is named, with where it can be had.
+    #[arg(long, value_name = "DIR")]
+    meshes: PathBuf,
+    /// Measure only this mesh; may be repeated.
+    #[arg(long, value_name = "NAME")]
+    only: Vec<String>,
+    /// For a look: fewer repetitions and samples.
+    #[arg(long)]
+    quick: bool,
+    /// Folder for what is written [default: target/peers].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -66,6 +97,20 @@ fn main() -> ExitCode {
             } else {
                 runner::run(&steps, &mut context, &mut std::io::stdout())
             }
+        }
+        Command::Peers(command) => {
+            let (what, options) = match command {
+                PeersCommand::Mesh(options) => (Comparison::Mesh, options),
+                PeersCommand::Picture(options) => (Comparison::Picture, options),
+                PeersCommand::Levels(options) => (Comparison::Levels, options),
+            };
+            // The commands run in the workspace folder; paths that a person types are meant from where that person is.
+            let here = std::env::current_dir().unwrap_or_default();
+            let out = options.out.map_or_else(|| context.root().join(peers::OUT), |out| here.join(out));
+            let meshes = here.join(options.meshes);
+            let request = Request { what, meshes, only: options.only, quick: options.quick, out };
+            let steps = peers::steps(context.root(), &request);
+            runner::run(&steps, &mut context, &mut std::io::stdout())
         }
         Command::Tidy => runner::run(&[tidy::step()], &mut context, &mut std::io::stdout()),
     };

@@ -6,7 +6,7 @@
 
 use crate::invocation::Invocation;
 use crate::runner::{Action, Context, Step};
-use crate::{fuzz, tidy, tools};
+use crate::{fuzz, peers, tidy, tools, workspace_root};
 
 #[cfg(test)]
 mod tests;
@@ -48,6 +48,7 @@ fn all(selection: &Selection) -> Vec<Step> {
                 cargo("fmt --all --check"),
                 cargo("fmt --manifest-path fuzz/Cargo.toml --check"),
                 cargo("fmt --manifest-path conformance/nostd-link/Cargo.toml --check"),
+                cargo("fmt --manifest-path tools/peers/Cargo.toml --check"),
             ],
         ),
         tidy::step(),
@@ -56,6 +57,9 @@ fn all(selection: &Selection) -> Vec<Step> {
     if full {
         steps.push(step("clippy, no default features", [clippy("--no-default-features")]));
         steps.push(step("clippy, all features", [clippy("--all-features")]));
+        let lints = peers::in_own_workspace(&workspace_root(), "clippy --all-targets -- -D warnings");
+        let tests = peers::in_own_workspace(&workspace_root(), "test");
+        steps.push(step("comparison with peers", [Action::Run(lints), Action::Run(tests)]));
     }
     steps.push(step(
         "documentation",

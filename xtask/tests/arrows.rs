@@ -219,6 +219,12 @@ fn fuzz_targets_use_libraries_only() {
 }
 
 #[test]
+fn the_comparison_with_peers_sees_us_as_a_user_does() {
+    let arrows = dependencies_in_other_workspace("tools/peers/Cargo.toml");
+    assert_eq!(arrows, BTreeSet::from(["pmesh-format".to_owned()]));
+}
+
+#[test]
 fn the_link_test_uses_the_crates_that_are_meant_to_need_no_std() {
     let expected = ["ivg-format", "ivg-wire", "pmesh-format"].map(str::to_owned);
     assert_eq!(

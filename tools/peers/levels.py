@@ -1,0 +1,65 @@
+"""Random levels of every mesh, of raw and of coded files: are they valid meshes, and how many faces are turned over?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import distance
+import meshes
+from project import Programs, progress
+from report import markdown
+
+COUNT = 200
+SEED = 1
+FORMS = {
+    "raw f32": ("--mode", "raw", "--positions", "f32"),
+    "coded f32": ("--mode", "coded", "--positions", "f32"),
+    "coded q14": ("--mode", "coded", "--positions", "q14"),
+    "coded q12": ("--mode", "coded", "--positions", "q12"),
+}
+
+
+def check(files: dict[str, Path], programs: Programs) -> tuple[str, int]:
+    """The table, and how many files have a level that is not valid."""
+    rows = []
+    faults = 0
+    for name, path in files.items():
+        source = programs.out / "meshes" / f"{name}.ply"
+        source.parent.mkdir(parents=True, exist_ok=True)
+        meshes.write(source, meshes.read(path))
+        for form, options in FORMS.items():
+            progress(f"{name}: {form}")
+            file, _ = programs.mesh(source, form.replace(" ", "-"), *options)
+            sampled = file.with_suffix(".faces")
+            found = programs.measure("levels", file, "--count", COUNT, "--seed", SEED, "-o", sampled)
+            turned = distance.directions(source, sampled)
+            verdict = "; ".join(f"{fault}: levels {at}" for fault, at in found["faults"].items()) or "valid"
+            faults += bool(found["faults"])
+            rows.append(
+                [
+                    name,
+                    form,
+                    f"{found['lowest']:,} to {found['highest']:,}, median {found['median']:,}",
+                    verdict,
+                    f"{turned['flipped']:.3f} %",
+                    f"{turned['worst']:.1f} %",
+                    f"{turned['faces']:,}",
+                ]
+            )
+    columns = [
+        "mesh",
+        "file",
+        "levels (vertices)",
+        "verdict",
+        "turned over",
+        "worst level",
+        "faces looked at",
+    ]
+    head = (
+        f"# {COUNT} random levels of each file (seed {SEED})\n\n"
+        "Valid: indices below the number of vertices, distinct corners, no corner that is a removed vertex, coincident faces "
+        "below 1 % of the vertices. Turned over: the normal is more than 90 degrees off that of the nearest point of the "
+        "original surface, by pymeshlab; at most 1,000 random faces of each level; thin parts count a face of the other "
+        "side as turned over.\n\n"
+    )
+    return head + markdown(columns, rows) + "\n", faults

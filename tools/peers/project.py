@@ -1,0 +1,65 @@
+"""Calls of the project's command `ivg` and of the measuring programs beside this file."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from meshes import PeersError
+
+Figures = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Programs:
+    """Where the programs lie, and the folder for what they write."""
+
+    ivg: Path
+    peers: Path
+    memory: Path
+    out: Path
+
+    def mesh(self, mesh: Path, name: str, *options: str) -> tuple[Path, Figures]:
+        """`ivg mesh`: the file and its figures."""
+        path = self.out / "pmesh" / f"{mesh.stem}.{name}.pmesh"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return path, called(self.ivg, "mesh", mesh, "-o", path, "--json", *options)
+
+    def extract(self, file: Path, level: int, out: Path) -> None:
+        """`ivg extract`: the mesh at a level."""
+        run(self.ivg, "extract", file, "--level", level, "-o", out)
+
+    def version(self) -> str:
+        """What `ivg --version` says."""
+        return run(self.ivg, "--version").strip()
+
+    def measure(self, *words: object) -> Any:
+        """One measurement by the Rust program."""
+        return called(self.peers, *words)
+
+    def replay_memory(self, file: Path) -> Figures:
+        """Heap of the decoded file."""
+        return called(self.memory, file)
+
+
+def run(*words: object) -> str:
+    """Standard output of a command that must succeed."""
+    command = [str(word) for word in words]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise PeersError(f"`{' '.join(command)}` ended with {done.returncode}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def called(*words: object) -> Any:
+    """The JSON that a command prints."""
+    return json.loads(run(*words))
+
+
+def progress(text: str) -> None:
+    """A line on standard error, so that standard output holds results alone."""
+    print(text, file=sys.stderr, flush=True)

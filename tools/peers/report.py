@@ -1,0 +1,327 @@
+"""The tables, and which targets are met."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from measure import BITS, DRACO_LEVEL, OTHERS, RAW_PACKETS, SHARES, Effort
+from project import Figures
+
+MESHOPT = "meshopt strip + zstd -19"
+OTHERS_NOTE = " The last columns are means of tools that drop components, cluster, or move vertices, with the faces reached."
+DRACO = f"Draco cl{DRACO_LEVEL}"
+
+
+@dataclass(frozen=True)
+class Target:
+    """What is asked of a figure on every mesh."""
+
+    name: str
+    values: dict[str, float]
+    limit: float
+    at_most: bool = True
+    unit: str = ""
+    stretch: bool = False
+
+    def holds(self, value: float) -> bool:
+        return value <= self.limit if self.at_most else value >= self.limit
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "name": self.name,
+            "limit": self.limit,
+            "at_most": self.at_most,
+            "unit": self.unit,
+            "stretch": self.stretch,
+            "met": all(map(self.holds, self.values.values())),
+            "median": statistics.median(self.values.values()),
+            "values": self.values,
+        }
+
+    def row(self) -> list[str]:
+        met = [name for name, value in self.values.items() if self.holds(value)]
+        worst = (max if self.at_most else min)(self.values, key=lambda name: self.values[name])
+        verdict = (
+            "met"
+            if len(met) == len(self.values)
+            else f"MISSED on {len(self.values) - len(met)} of {len(self.values)}"
+        )
+        limit = f"{'<=' if self.at_most else '>='} {self.limit:g} {self.unit}".strip()
+        median = f"{statistics.median(self.values.values()):.3g}"
+        kind = "stretch" if self.stretch else "target"
+        return [self.name, kind, limit, verdict, median, f"{self.values[worst]:.3g} ({worst})"]
+
+
+def markdown(columns: list[str], rows: list[list[str]]) -> str:
+    """A table whose columns are aligned, the first to the left."""
+    widths = [max(len(row[k]) for row in [columns, *rows]) for k in range(len(columns))]
+
+    def line(cells: list[str]) -> str:
+        padded = [
+            cell.ljust(width) if k == 0 else cell.rjust(width)
+            for k, (cell, width) in enumerate(zip(cells, widths))
+        ]
+        return f"| {' | '.join(padded)} |"
+
+    rule = "|".join(
+        "-" * (width + 2) if k == 0 else "-" * (width + 1) + ":" for k, width in enumerate(widths)
+    )
+    return "\n".join([line(columns), f"|{rule}|", *map(line, rows)])
+
+
+class Report:
+    """Tables of all meshes, in the order of the targets."""
+
+    def __init__(self, figures: dict[str, Figures], effort: Effort) -> None:
+        self.figures = figures
+        self.effort = effort
+        self.targets: list[Target] = []
+        self.parts: list[str] = []
+        self._meshes()
+        self._bytes()
+        self._first()
+        self._speed()
+        self._surfaces()
+        self._overheads()
+
+    def text(self, versions: dict[str, str]) -> str:
+        """Everything as Markdown; the targets come last."""
+        names = ", ".join(f"{name} {version}" for name, version in versions.items())
+        head = f"# Progressive meshes and their peers\n\nVersions: {names}."
+        columns = ["target", "kind", "limit", "verdict", "median", "worst"]
+        summary = "## Targets\n\n" + markdown(columns, [target.row() for target in self.targets])
+        return "\n\n".join([head, *self.parts, summary]) + "\n"
+
+    def _add(self, title: str, note: str, columns: list[str], cells: Callable[[Figures], list[str]]) -> None:
+        rows = [[name, *cells(figures)] for name, figures in self.figures.items()]
+        self.parts.append(f"## {title}\n\n{note}\n\n" + markdown(["mesh", *columns], rows))
+
+    def _target(
+        self, name: str, value: Callable[[Figures], float], limit: float, *, only: str = "", **how: Any
+    ) -> None:
+        values = {mesh: value(figures) for mesh, figures in self.figures.items() if only in ("", mesh)}
+        if values:
+            self.targets.append(Target(name, values, limit, **how))
+
+    def _meshes(self) -> None:
+        self._add(
+            "Meshes",
+            "Vertices are those that a face names; the project and Draco store equal positions once. Bits per vertex below "
+            "are bytes by the column V for all tools.",
+            ["V", "F", "unreferenced", "V project", f"V {DRACO}", "plain bytes"],
+            lambda m: [
+                f"{m['vertices']:,}",
+                f"{m['faces']:,}",
+                f"{m['unreferenced']:,}",
+                f"{m['project']['coded q12']['vertices']:,}",
+                f"{m['draco']['q14']['vertices']:,}",
+                f"{m['plain_bytes']:,}",
+            ],
+        )
+
+    def _bytes(self) -> None:
+        for form in [*(f"q{bits}" for bits in BITS), "f32"]:
+            coded = f"coded {form}"
+
+            def size(m: Figures, coded: str = coded) -> int:
+                return m["project"][coded]["bytes"]
+
+            def cells(m: Figures, form: str = form) -> list[str]:
+                sizes = [size(m), m["meshopt"][form]["bytes"], m["draco"][form]["bytes"]]
+                bits = [f"{8 * count / m['vertices']:.2f}" for count in sizes]
+                ratios = [f"{sizes[0] / other:.3f}" for other in sizes[1:]]
+                return [*bits, *ratios, *(f"{count:,}" for count in sizes)]
+
+            quantised = form != "f32"
+            peer = DRACO if quantised else "Draco qp 0"
+            title = (
+                f"positions of {form[1:]} bits" if quantised else "positions as 32-bit floats, nothing lost"
+            )
+            self._add(
+                f"Bits per vertex, {title}",
+                "Coded packets of +30 % vertices, every level inside, against files that hold the finest mesh alone.",
+                [coded, MESHOPT, peer, "/ meshopt", "/ Draco", "bytes", "bytes meshopt", "bytes Draco"],
+                cells,
+            )
+            self._target(
+                f"bits per vertex {form} / {MESHOPT}",
+                lambda m, form=form: size(m) / m["meshopt"][form]["bytes"],
+                1.0,
+            )
+            if quantised:
+                self._target(
+                    f"bits per vertex {form} / {DRACO}",
+                    lambda m, form=form: size(m) / m["draco"][form]["bytes"],
+                    1.35,
+                    stretch=True,
+                )
+
+    def _first(self) -> None:
+        def first(m: Figures) -> Figures:
+            return m["project"]["coded q14"]
+
+        self._add(
+            "The first 1 % of the vertices, coded q14",
+            "Bytes from the start of the file, headers and all, to the end of the packet with which 1 % of the vertices are "
+            f"there; packets end where they end, so they bring more. Beside it a file of {DRACO} q14 with meshoptimizer's "
+            "simplification to 1 % of the faces, and nothing after it.",
+            ["1 %", "bytes", "vertices then", "bytes a vertex", f"bytes {DRACO} of 1 %"],
+            lambda m: [
+                f"{first(m)['hundredth']:,}",
+                f"{first(m)['first_bytes']:,}",
+                f"{first(m)['first_vertices']:,}",
+                f"{first(m)['first_bytes'] / first(m)['first_vertices']:.2f}",
+                f"{m['draco']['first_bytes']:,}",
+            ],
+        )
+        for limit, stretch in ((20.0, False), (15.0, True)):
+            self._target(
+                "first 1 % of the dragon, coded q14",
+                lambda m: first(m)["first_bytes"] / 1000,
+                limit,
+                only="dragon",
+                unit="kB",
+                stretch=stretch,
+            )
+
+    def _speed(self) -> None:
+        def speed(m: Figures, tool: str, form: str) -> float:
+            return m["faces"] / m[tool][form]["decode_seconds"] / 1e6
+
+        def order(m: Figures) -> float:
+            raw = m["project"]["raw f32"]
+            return 1e6 * raw["seconds"]["order"] / m["vertices"]
+
+        columns = {
+            "coded q14": lambda m: speed(m, "project", "coded q14"),
+            "raw f32": lambda m: speed(m, "project", "raw f32"),
+            f"{MESHOPT} q14": lambda m: speed(m, "meshopt", "q14"),
+            f"{DRACO} q14": lambda m: speed(m, "draco", "q14"),
+        }
+        self._add(
+            "Speed",
+            f"Decoding on one core in millions of triangles a second: processor time, median of {self.effort.runs} runs. The "
+            "project's decoder ends with the finest level and with what takes it to every other one. Ordering: wall clock, "
+            "the whole chain of levels.",
+            [*columns, "coded / Draco", "order [us a vertex]"],
+            lambda m: [
+                *(f"{value(m):.1f}" for value in columns.values()),
+                f"{speed(m, 'project', 'coded q14') / speed(m, 'draco', 'q14'):.2f}",
+                f"{order(m):.2f}",
+            ],
+        )
+        self._target(
+            f"decode coded q14 / {DRACO} q14",
+            lambda m: speed(m, "project", "coded q14") / speed(m, "draco", "q14"),
+            1.0,
+            at_most=False,
+        )
+        mtris = "Mtris/s"
+        for form, limit, stretch in (
+            ("coded q14", 40, True),
+            ("raw f32", 100, False),
+            ("raw f32", 150, True),
+        ):
+            self._target(
+                f"decode {form}",
+                lambda m, form=form: speed(m, "project", form),
+                limit,
+                at_most=False,
+                unit=mtris,
+                stretch=stretch,
+            )
+        self._target("order, whole chain", order, 15, unit="us a vertex")
+        self._target("order, whole chain", order, 5, unit="us a vertex", stretch=True)
+
+    def _surfaces(self) -> None:
+        for share in SHARES:
+            key = f"{share:g}"
+
+            def at(m: Figures, tool: str, what: str, key: str = key) -> float:
+                return m["surfaces"][key][tool][what]
+
+            others = list(OTHERS) if self.effort.others else []
+
+            def cells(m: Figures, others: list[str] = others, at: Callable[..., float] = at) -> list[str]:
+                row = [f"{at(m, 'project', 'faces'):,}", f"{at(m, 'meshopt', 'faces'):,}"]
+                for what, digits in (("mean", 4), ("max", 2)):
+                    ours, theirs = at(m, "project", what), at(m, "meshopt", what)
+                    row += [f"{ours:.{digits}f}", f"{theirs:.{digits}f}", f"{ours / theirs:.3f}"]
+                return row + [f"{at(m, tool, 'mean'):.4f} ({at(m, tool, 'faces'):,})" for tool in others]
+
+            self._add(
+                f"Distance at {key} % of the faces",
+                "Symmetric distance from the original in % of the diagonal of its bounds, by pymeshlab, "
+                f"{self.effort.samples:,} random points of the faces each way. The project's level has at most as many "
+                "faces as meshopt_simplify reached." + (OTHERS_NOTE if others else ""),
+                ["F", "F meshopt", "mean", "meshopt", "ratio", "max", "meshopt", "ratio", *others],
+                cells,
+            )
+            for what, limit, stretch in (
+                ("mean", 1.0, False),
+                ("max", 1.2, False),
+                ("mean", 0.9, True),
+                ("max", 1.0, True),
+            ):
+                self._target(
+                    f"{what} distance at {key} % / meshopt_simplify",
+                    lambda m, what=what, at=at: at(m, "project", what) / at(m, "meshopt", what),
+                    limit,
+                    stretch=stretch,
+                )
+        self._target(
+            "mean distance of the dragon at 0.2 %",
+            lambda m: m["surfaces"]["0.2"]["project"]["mean"],
+            0.32,
+            only="dragon",
+            unit="% of the diagonal",
+        )
+
+    def _overheads(self) -> None:
+        def coded(m: Figures) -> float:
+            return 100 * (
+                m["project"]["coded q14"]["bytes"] / m["project"]["coded q14, one packet"]["bytes"] - 1
+            )
+
+        def raw(m: Figures, packet: int) -> float:
+            form = m["project"][f"raw f32, {packet} a packet"]
+            return 100 * (form["bytes"] / (12 * form["vertices"] + 12 * form["faces"]) - 1)
+
+        def memory(m: Figures, form: str, what: str) -> float:
+            figures = m["project"][form]
+            return (figures[f"{what}_bytes"] - figures["mesh_bytes"]) / figures["mesh_bytes"]
+
+        kept = [(form, what) for form in ("raw f32", "coded q14") for what in ("replay", "peak")]
+        self._add(
+            "Overheads",
+            "Bytes of coded q14 packets of +30 % vertices over one packet; of raw packets over the plain indexed mesh (12 bytes "
+            "a vertex, 12 a face); heap of the decoder beside the plain mesh, over the plain mesh, when all is in and at its "
+            "peak.",
+            ["coded over one packet", *(f"raw, {packet:,} a packet" for packet in RAW_PACKETS)]
+            + [f"heap, {form}{', peak' if what == 'peak' else ''}" for form, what in kept],
+            lambda m: [
+                f"{coded(m):+.2f} %",
+                *(f"{raw(m, packet):+.1f} %" for packet in RAW_PACKETS),
+                *(f"{memory(m, form, what):.2f} x" for form, what in kept),
+            ],
+        )
+        self._target("coded packets over one packet", coded, 8, unit="%")
+        self._target("coded packets over one packet", coded, 3, unit="%", stretch=True)
+        for packet, limit, stretch in ((250, 25, False), (5000, 18, False), (5000, 12, True)):
+            self._target(
+                f"raw packets of {packet:,} over the plain mesh",
+                lambda m, packet=packet: raw(m, packet),
+                limit,
+                unit="%",
+                stretch=stretch,
+            )
+        for form in ("raw f32", "coded q14"):
+            self._target(
+                f"heap of the replay beside the mesh, {form}",
+                lambda m, form=form: memory(m, form, "replay"),
+                1.5,
+                unit="x the mesh",
+            )

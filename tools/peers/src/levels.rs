@@ -1,0 +1,116 @@
+//! Random levels of a file, each looked at by a check of its own: nothing here trusts what the decoder checks.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use pmesh_format::Replay;
+use serde_json::{Value, json};
+
+use crate::Failure;
+
+#[cfg(test)]
+mod tests;
+
+/// Faces of a level whose direction is held against the original surface, at most.
+const SAMPLED_FACES: usize = 1000;
+
+/// What levels are asked for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Choice {
+    /// How many.
+    pub(crate) count: u32,
+    /// Of the random numbers.
+    pub(crate) seed: u64,
+}
+
+/// Goes to random levels in random order, half of them even in their number of vertices, half in its logarithm. Each must
+/// have indices below its number of vertices, distinct corners, and coincident faces (the same three vertices) below 1 % of
+/// its vertices. Centre and normal of some faces go to `out`, with the number of the level, as rows of seven floats.
+pub(crate) fn check(replay: &mut Replay, choice: Choice, out: &Path) -> Result<Value, Failure> {
+    let levels = replay.levels().ok_or("the file has no level")?;
+    let (low, high) = (f64::from(*levels.start()), f64::from(*levels.end()));
+    let mut random = Random(choice.seed);
+    let mut rows = Vec::new();
+    let mut faulty = BTreeMap::new();
+    let mut visited = Vec::new();
+    for k in 0..choice.count {
+        let u = random.unit();
+        let wanted = if k % 2 == 0 { low + u * (high - low) } else { low * (high / low).powf(u) };
+        let level = (wanted.round() as u32).clamp(*levels.start(), *levels.end());
+        replay.set_level(level)?;
+        visited.push(level);
+        let found = faults(level, replay.wedge_count(), replay.indices(), |wedge| replay.wedge_vertex(wedge));
+        for fault in found {
+            faulty.entry(fault).or_insert_with(Vec::new).push(level);
+        }
+        sample(replay, &mut random, &mut rows);
+    }
+    let bytes: Vec<u8> = rows.iter().flat_map(|x: &f32| x.to_le_bytes()).collect();
+    fs::write(out, bytes)?;
+    visited.sort_unstable();
+    Ok(json!({
+        "levels": choice.count, "lowest": visited.first(), "highest": visited.last(),
+        "median": visited.get(visited.len() / 2), "faults": faulty,
+    }))
+}
+
+/// What is wrong with a level of so many vertices and wedges, by name. The faces name wedges.
+fn faults(level: u32, wedges: u32, faces: &[[u32; 3]], vertex_of: impl Fn(u32) -> u32) -> Vec<&'static str> {
+    if faces.as_flattened().iter().any(|&wedge| wedge >= wedges) {
+        return vec!["an index is too large"];
+    }
+    let mut found = Vec::new();
+    let mut faces: Vec<[u32; 3]> = faces.iter().map(|face| face.map(&vertex_of)).collect();
+    if faces.iter().flatten().any(|&vertex| vertex >= level) {
+        found.push("a corner is a removed vertex");
+    }
+    for face in &mut faces {
+        face.sort_unstable();
+    }
+    if faces.iter().any(|face| face[0] == face[1] || face[1] == face[2]) {
+        found.push("two corners of a face are equal");
+    }
+    faces.sort_unstable();
+    let coincident = faces.windows(2).filter(|pair| pair[0] == pair[1]).count();
+    // A closed surface ends as two opposite triangles: one pair is never too much.
+    if coincident > 1 && 100 * coincident >= level as usize {
+        found.push("coincident faces are 1 % of the vertices or more");
+    }
+    found
+}
+
+/// Level, centre and normal of random faces, or of all if they are few; faces without area have no normal and are left out.
+fn sample(replay: &Replay, random: &mut Random, rows: &mut Vec<f32>) {
+    let faces = replay.indices();
+    let origin = replay.header().origin;
+    let all = faces.len() <= SAMPLED_FACES;
+    for k in 0..faces.len().min(SAMPLED_FACES) {
+        let face = if all { k } else { (random.unit() * faces.len() as f64) as usize };
+        let [a, b, c] =
+            faces[face].map(|wedge| replay.positions()[replay.wedge_vertex(wedge) as usize].map(f64::from));
+        let edge = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
+        let (u, v) = (edge(b), edge(c));
+        let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length > 0.0 {
+            rows.push(replay.level() as f32);
+            rows.extend((0..3).map(|k| (origin[k] + (a[k] + b[k] + c[k]) / 3.0) as f32));
+            rows.extend(normal.map(|x| (x / length) as f32));
+        }
+    }
+}
+
+/// SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
+struct Random(u64);
+
+impl Random {
+    /// Even in [0, 1).
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
