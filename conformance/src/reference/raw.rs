@@ -256,7 +256,7 @@ fn levels(
             }
             match own.get(code - 1) {
                 Some(&wedge) if tables.targets[&wedge] == present => {
-                    tables.corners[slot / 3][slot % 3] = wedge
+                    tables.corners[slot / 3][slot % 3] = wedge;
                 }
                 _ => return Err(Fault { code: SWITCH, at }),
             }

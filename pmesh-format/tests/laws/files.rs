@@ -10,22 +10,22 @@ use pmesh_format::{
 };
 
 /// Bytes of a directory entry (PMESH-DIR-02), and of a record before its payload.
-pub const ENTRY: usize = 20;
-pub const RECORD_HEAD: usize = 8;
+pub(crate) const ENTRY: usize = 20;
+pub(crate) const RECORD_HEAD: usize = 8;
 
 /// A repeatable source of numbers.
-pub struct Numbers {
+pub(crate) struct Numbers {
     seed: u64,
     next: u64,
 }
 
 impl Numbers {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self { seed, next: 0 }
     }
 
     /// A number below `bound`, which is at least 1.
-    pub fn below(&mut self, bound: usize) -> usize {
+    pub(crate) fn below(&mut self, bound: usize) -> usize {
         self.next += 1;
         (splitmix64(self.seed, self.next) % bound as u64) as usize
     }
@@ -33,7 +33,7 @@ impl Numbers {
 
 /// A mesh with random parents and faces; two wedges at every other vertex, normals, texture coordinates, colours and materials
 /// if `rich`. No surface, but every table that the format allows is as likely as any other.
-pub fn random(seed: u64, vertices: usize, rich: bool) -> ProgressiveMesh {
+pub(crate) fn random(seed: u64, vertices: usize, rich: bool) -> ProgressiveMesh {
     let mut numbers = Numbers::new(seed);
     let base = 3.min(vertices);
     let counts: Vec<usize> = (0..vertices).map(|v| if rich { 1 + v % 2 } else { 1 }).collect();
@@ -77,7 +77,7 @@ pub fn random(seed: u64, vertices: usize, rich: bool) -> ProgressiveMesh {
 }
 
 /// Vertex k collapses onto k − 1, face k is (k, k + 1, k + 2).
-pub fn strip() -> ProgressiveMesh {
+pub(crate) fn strip() -> ProgressiveMesh {
     ProgressiveMesh {
         positions: (0..5u16).map(|v| [f32::from(v), f32::from(v % 2), 0.0]).collect(),
         wedges: Wedges { vertices: (0..5).collect(), ..Wedges::default() },
@@ -92,7 +92,7 @@ pub fn strip() -> ProgressiveMesh {
 
 /// Two vertices with two wedges each, of which the last collapses onto the other; both faces of the base switch. It has every
 /// array that a file can have.
-pub fn seam() -> ProgressiveMesh {
+pub(crate) fn seam() -> ProgressiveMesh {
     ProgressiveMesh {
         positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]],
         wedges: Wedges {
@@ -112,12 +112,12 @@ pub fn seam() -> ProgressiveMesh {
 }
 
 /// A file with packets of that many vertices.
-pub fn file(mesh: &ProgressiveMesh, packet: u32) -> Vec<u8> {
+pub(crate) fn file(mesh: &ProgressiveMesh, packet: u32) -> Vec<u8> {
     encode(mesh, &EncodeOptions::fixed(packet)).unwrap()
 }
 
 /// Files of all kinds that this crate writes, each with the mesh that it holds.
-pub fn samples() -> Vec<Vec<u8>> {
+pub(crate) fn samples() -> Vec<Vec<u8>> {
     let mut files = vec![file(&ProgressiveMesh::default(), 1), file(&strip(), 1), file(&seam(), 3)];
     for (seed, vertices, rich, packet) in
         [(1, 1, false, 1), (2, 12, false, 5), (3, 14, true, 4), (4, 20, true, 100)]
@@ -128,7 +128,7 @@ pub fn samples() -> Vec<Vec<u8>> {
 }
 
 /// The header of a file that has a right one.
-pub fn header(file: &[u8]) -> Header {
+pub(crate) fn header(file: &[u8]) -> Header {
     match Header::read(file, &Limits::default()) {
         Ok(Step::Consumed(_, header)) => header,
         other => panic!("{other:?}"),
@@ -136,13 +136,13 @@ pub fn header(file: &[u8]) -> Header {
 }
 
 /// Packet `k` of a file, read alone.
-pub fn packet<'a>(file: &'a [u8], header: &'a Header, k: u32) -> Packet<'a> {
+pub(crate) fn packet<'a>(file: &'a [u8], header: &'a Header, k: u32) -> Packet<'a> {
     let range = header.packet_range(k);
     decode_packet(header, k, &file[range.start as usize..range.end as usize]).unwrap()
 }
 
 /// The first `count` packets of a file, applied.
-pub fn replayed(file: &[u8], count: u32) -> Replay {
+pub(crate) fn replayed(file: &[u8], count: u32) -> Replay {
     let header = header(file);
     let mut replay = Replay::new(&header);
     for k in 0..count {
@@ -153,7 +153,7 @@ pub fn replayed(file: &[u8], count: u32) -> Replay {
 
 /// Every level that a replay can show, from the coarsest on, without the names of materials, which are no part of a packet; the
 /// level that it shows stays.
-pub fn levels(replay: &mut Replay) -> Vec<IndexedMesh> {
+pub(crate) fn levels(replay: &mut Replay) -> Vec<IndexedMesh> {
     let now = replay.level();
     let levels: Vec<IndexedMesh> = replay
         .levels()
@@ -170,19 +170,19 @@ pub fn levels(replay: &mut Replay) -> Vec<IndexedMesh> {
     levels
 }
 
-pub fn u32_at(bytes: &[u8], at: usize) -> u32 {
+pub(crate) fn u32_at(bytes: &[u8], at: usize) -> u32 {
     u32::from_le_bytes(*bytes[at..].first_chunk().unwrap())
 }
 
-pub fn u64_at(bytes: &[u8], at: usize) -> u64 {
+pub(crate) fn u64_at(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(*bytes[at..].first_chunk().unwrap())
 }
 
-pub fn put(bytes: &mut [u8], at: usize, new: &[u8]) {
+pub(crate) fn put(bytes: &mut [u8], at: usize, new: &[u8]) {
     bytes[at..at + new.len()].copy_from_slice(new);
 }
 
-pub fn put32(bytes: &mut [u8], at: usize, values: &[u32]) {
+pub(crate) fn put32(bytes: &mut [u8], at: usize, values: &[u32]) {
     for (k, value) in values.iter().enumerate() {
         put(bytes, at + 4 * k, &value.to_le_bytes());
     }
@@ -190,17 +190,17 @@ pub fn put32(bytes: &mut [u8], at: usize, values: &[u32]) {
 
 /// A file taken apart.
 #[derive(Clone, Debug)]
-pub struct Parts {
+pub(crate) struct Parts {
     /// The whole header; lengths in it, and its checksum, are put right when the file is put together.
-    pub header: Vec<u8>,
+    pub(crate) header: Vec<u8>,
     /// Chunks: kind, critical, payload.
-    pub chunks: Vec<(ChunkKind, bool, Vec<u8>)>,
+    pub(crate) chunks: Vec<(ChunkKind, bool, Vec<u8>)>,
     /// Records: id, payload.
-    pub packets: Vec<(u32, Vec<u8>)>,
+    pub(crate) packets: Vec<(u32, Vec<u8>)>,
 }
 
 impl Parts {
-    pub fn of(file: &[u8]) -> Self {
+    pub(crate) fn of(file: &[u8]) -> Self {
         let header = file[..u32_at(file, 20) as usize].to_vec();
         let data = u64_at(file, 40) as usize;
         let (mut at, mut chunks) = (header.len(), vec![]);
@@ -222,32 +222,32 @@ impl Parts {
     }
 
     /// The payload of the directory.
-    pub fn directory(&mut self) -> &mut Vec<u8> {
+    pub(crate) fn directory(&mut self) -> &mut Vec<u8> {
         assert_eq!(self.chunks[0].0, DIRECTORY);
         &mut self.chunks[0].2
     }
 
     /// Gives a packet another payload, and the directory its length.
-    pub fn set_payload(&mut self, k: usize, payload: Vec<u8>) {
+    pub(crate) fn set_payload(&mut self, k: usize, payload: Vec<u8>) {
         put32(self.directory(), ENTRY * k + 12, &[payload.len() as u32]);
         self.packets[k].1 = payload;
     }
 
     /// Where the chunks end and the records begin.
-    pub fn data_offset(&self) -> u64 {
+    pub(crate) fn data_offset(&self) -> u64 {
         let chunks = self.chunks.iter().map(|chunk| (20 + chunk.2.len() as u64).next_multiple_of(8));
         self.header.len() as u64 + chunks.sum::<u64>()
     }
 
     /// Where the payload of record `k` begins in the file.
-    pub fn payload_offset(&self, k: usize) -> u64 {
+    pub(crate) fn payload_offset(&self, k: usize) -> u64 {
         let records = self.packets[..k].iter().map(|p| record_len(p.1.len() as u64).unwrap());
         self.data_offset() + records.sum::<u64>() + RECORD_HEAD as u64
     }
 
     /// Where the arrays of a raw packet with positions of 12 bytes begin, in the order of the table in PMESH-PKT-02, and where
     /// the last of them ends.
-    pub fn arrays(&self, k: usize) -> [usize; 8] {
+    pub(crate) fn arrays(&self, k: usize) -> [usize; 8] {
         assert_eq!(self.header[76..78], [1, 1], "raw packets, f32 positions");
         let directory = &self.chunks[0].2;
         let entry = |k: usize, field: usize| u32_at(directory, ENTRY * k + 4 * field) as usize;
@@ -267,7 +267,7 @@ impl Parts {
     }
 
     /// The file.
-    pub fn build(&self) -> Vec<u8> {
+    pub(crate) fn build(&self) -> Vec<u8> {
         let mut file = self.header.clone();
         let content_id = ContentId(u64_at(&file, 32));
         let records = self.packets.iter().map(|p| record_len(p.1.len() as u64).unwrap());
