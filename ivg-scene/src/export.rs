@@ -5,7 +5,7 @@ mod obj;
 mod ply;
 
 pub use glb::{GlbOptions, write_glb};
-pub use obj::write_obj;
+pub use obj::{write_obj, write_obj_joined};
 pub use ply::write_ply;
 
 #[cfg(test)]

@@ -12,11 +12,34 @@ use crate::Mesh;
 ///
 /// Those of `out`.
 pub fn write_obj(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+    let own: Vec<u32> = (0..).take(mesh.positions.len()).collect();
+    write_obj_joined(mesh, &own, out)
+}
+
+/// As [`write_obj`], with one position for vertices that are the same place with different attributes: `places` has the
+/// number of each vertex's place, counted from 0 without gaps, rising from vertex to vertex.
+///
+/// A place has the position of its first vertex. A corner has the number of the place, and that of the vertex for its
+/// normal and texture coordinate.
+///
+/// # Errors
+///
+/// Those of `out`.
+///
+/// # Panics
+///
+/// If a triangle names a vertex that `places` does not have.
+pub fn write_obj_joined(mesh: &Mesh, places: &[u32], out: &mut dyn Write) -> io::Result<()> {
     if !mesh.name.is_empty() {
         // A line break would end the name and begin a statement.
         writeln!(out, "o {}", mesh.name.replace(['\n', '\r'], " "))?;
     }
-    for p in &mesh.positions {
+    let mut next = 0;
+    for (p, &place) in mesh.positions.iter().zip(places) {
+        if place < next {
+            continue;
+        }
+        next = place + 1;
         let p = mesh.origin + p.as_dvec3();
         writeln!(out, "v {} {} {}", p.x, p.y, p.z)?;
     }
@@ -28,12 +51,13 @@ pub fn write_obj(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     }
     for t in &mesh.triangles {
         write!(out, "f")?;
-        for i in t.map(|i| u64::from(i) + 1) {
+        for i in t {
+            let (v, i) = (u64::from(places[*i as usize]) + 1, u64::from(*i) + 1);
             match (mesh.uvs.is_empty(), mesh.normals.is_empty()) {
-                (true, true) => write!(out, " {i}")?,
-                (true, false) => write!(out, " {i}//{i}")?,
-                (false, true) => write!(out, " {i}/{i}")?,
-                (false, false) => write!(out, " {i}/{i}/{i}")?,
+                (true, true) => write!(out, " {v}")?,
+                (true, false) => write!(out, " {v}//{i}")?,
+                (false, true) => write!(out, " {v}/{i}")?,
+                (false, false) => write!(out, " {v}/{i}/{i}")?,
             }
         }
         writeln!(out)?;

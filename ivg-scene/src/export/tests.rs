@@ -244,3 +244,23 @@ fn meshes_read_back_from_obj_and_ply_as_they_were() {
         }
     }
 }
+
+#[test]
+fn vertices_of_one_place_share_a_position_and_keep_their_attributes() {
+    let mesh = Mesh {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::X, Vec3::Y],
+        normals: vec![Vec3::Z, Vec3::Z, Vec3::X, Vec3::Z],
+        uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE],
+        triangles: vec![[0, 1, 3], [0, 3, 2]],
+        triangle_materials: vec![0, 0],
+        ..Mesh::default()
+    };
+    let mut obj = Vec::new();
+    write_obj_joined(&mesh, &[0, 1, 1, 2], &mut obj).expect("memory takes all bytes");
+    let text = String::from_utf8(obj).expect("text");
+    assert_eq!(
+        text,
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 1\nvt 1 1\nvt 0 0\nvt 1 0\nvn 0 0 1\nvn 0 0 1\nvn 1 0 0\nvn 0 0 1\n\
+         f 1/1/1 2/2/2 3/4/4\nf 1/1/1 3/4/4 2/3/3\n"
+    );
+}
