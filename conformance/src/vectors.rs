@@ -3,6 +3,7 @@
 
 pub mod edit;
 mod ivg;
+pub mod levels;
 mod manifest;
 mod pmesh;
 mod prefix;

@@ -1,5 +1,6 @@
 //! The list of all vectors for readers in other languages.
 
+use super::levels::{LevelHash, level_hashes};
 use super::{Format, Vector};
 use ivg_format::{Event, Limits, VertexValues, decode_all};
 use serde::Serialize;
@@ -30,6 +31,8 @@ struct Entry<'a> {
     twin: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     values: Option<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    levels: Vec<LevelHash>,
     why: &'a str,
 }
 
@@ -62,6 +65,10 @@ fn entry(vector: &Vector) -> Entry<'_> {
         code: vector.code,
         twin: vector.twin.map(|twin| format!("{format}/{twin}")),
         values: values(vector),
+        levels: match (vector.format, vector.code) {
+            (Format::Pmesh, None) => level_hashes(&vector.bytes),
+            _ => Vec::new(),
+        },
         why: vector.why,
     }
 }

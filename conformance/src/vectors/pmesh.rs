@@ -6,6 +6,7 @@ use pmesh_format::{EncodeOptions, Header, Limits, ProgressiveMesh, Step, Wedges,
 use std::ops::Range;
 
 mod refused;
+mod variants;
 
 /// Places of fields in the header (`spec/tables/pmesh.toml`).
 mod at {
@@ -47,10 +48,12 @@ const EQUAL_PACKETS: &str = "0009-equal-packets";
 const OCTAHEDRON: &str = "0003-octahedron";
 const ONE_PACKET: &str = "0004-one-packet";
 const SEAM: &str = "0005-seam";
-pub(super) const PREFIX_VECTOR: &str = OCTAHEDRON;
+/// Vectors with a table of what is known after how many bytes.
+pub(super) const PREFIX_VECTORS: [&str; 2] = [OCTAHEDRON, "0011-raw-attributes"];
 
 pub(super) fn vectors() -> Vec<Vector> {
     let mut vectors = accepted();
+    vectors.extend(variants::accepted());
     let refused = refused::refused(&vectors);
     vectors.extend(refused);
     vectors

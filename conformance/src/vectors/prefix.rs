@@ -23,7 +23,9 @@ pub struct PrefixRow {
 pub fn prefix_rows(vector: &Vector) -> Option<Vec<PrefixRow>> {
     let ends = match vector.format {
         Format::Ivg if ivg::PREFIX_VECTORS.contains(&vector.name.as_str()) => ivg::record_ends(&vector.bytes),
-        Format::Pmesh if vector.name == pmesh::PREFIX_VECTOR => pmesh::record_ends(&vector.bytes),
+        Format::Pmesh if pmesh::PREFIX_VECTORS.contains(&vector.name.as_str()) => {
+            pmesh::record_ends(&vector.bytes)
+        }
         _ => return None,
     };
     let length = vector.bytes.len();

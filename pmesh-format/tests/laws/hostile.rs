@@ -269,6 +269,19 @@ fn counts_of_header_and_directory_that_lie_are_refused_before_any_packet() {
     }
 }
 
+#[test]
+fn counts_without_vertices_are_refused() {
+    let empty = Parts::of(&file(&ProgressiveMesh::default(), 1));
+    for at in [56, 60, 64, 68, 72] {
+        let mut parts = empty.clone();
+        put32(&mut parts.header, at, &[1]);
+        let (_, error) = read(&parts.build());
+        // A vertex alone lacks its wedge; that is found first.
+        let expected = if at == 56 { 60 } else { at as u64 };
+        assert_eq!((error.code(), error.offset().0), (codes::COUNTS.number(), expected), "{error}");
+    }
+}
+
 /// The directory moves the border between two packets, whose payloads stay: what the first is then missing, or has too much.
 #[test]
 fn a_directory_that_moves_a_vertex_to_another_packet_is_refused() {

@@ -66,6 +66,20 @@ fn container(file: &[u8]) -> Vec<Refused> {
         ),
         (
             o,
+            "parameters-reserved",
+            wire::RESERVED,
+            in_header(file, at::NORMAL_BITS + 2, &[1]),
+            "a reserved field behind the bits of coded attributes",
+        ),
+        (
+            o,
+            "header-end",
+            wire::RESERVED,
+            in_header(file, at::END - 4, &[1]),
+            "a reserved field at the end of the header",
+        ),
+        (
+            o,
             "parameters",
             mesh::PARAMETERS,
             in_header(file, at::NORMAL_BITS, &[10]),
