@@ -1,6 +1,7 @@
 //! What must hold of writer and reader of `.pmesh` together, for any progressive mesh.
 
 use crate::choices::Choices;
+use crate::surfaces::{Kind, surface};
 use pmesh_format::{
     Decoder, EncodeOptions, Event, Limits, PacketSize, ProgressiveMesh, Replay, Step, Wedges, check, encode,
 };
@@ -53,8 +54,26 @@ fn choose_options(choices: &mut Choices<'_>) -> EncodeOptions {
     EncodeOptions { packets, ..EncodeOptions::new() }
 }
 
-/// Any mesh whose tables are valid; most are no surface.
+/// A surface, or any mesh whose tables are valid.
 fn choose_mesh(choices: &mut Choices<'_>) -> ProgressiveMesh {
+    let flags = choices.byte();
+    if flags & 1 == 0 {
+        return choose_tables(choices);
+    }
+    let kind = Kind {
+        vertices: 3 + choices.below(MOST_VERTICES - 2),
+        bordered: flags & 2 != 0,
+        normals: flags & 4 != 0,
+        uvs: flags & 8 != 0,
+        colours: flags & 16 != 0,
+        seams: flags & 32 != 0,
+        irregular: flags & 64 != 0,
+    };
+    surface(kind, |bound| choices.below(bound))
+}
+
+/// Any mesh whose tables are valid; most are no surface.
+fn choose_tables(choices: &mut Choices<'_>) -> ProgressiveMesh {
     let vertices = choices.below(MOST_VERTICES + 1);
     let base = if vertices == 0 { 0 } else { 1 + choices.below(vertices) };
     let flags = choices.byte();

@@ -269,6 +269,31 @@ fn counts_of_header_and_directory_that_lie_are_refused_before_any_packet() {
     }
 }
 
+/// The strip has packets that end at vertices 3, 4, 5; without seams each vertex has one wedge.
+#[test]
+fn entries_that_contradict_the_header_are_refused_at_their_field() {
+    for (k, field, value) in [
+        // Before the base, as many as before, more than there are.
+        (0, 0, 2),
+        (1, 0, 3),
+        (2, 0, 6),
+        // Fewer wedges than vertices, more.
+        (0, 1, 2),
+        (1, 1, 5),
+        (2, 1, 4),
+        // Fewer faces than before, more than there are.
+        (1, 2, 0),
+        (1, 2, 4),
+    ] {
+        let mut parts = Parts::of(&file(&strip(), 1));
+        put32(parts.directory(), ENTRY * k + 4 * field, &[value]);
+        let at = (parts.header.len() + 16 + ENTRY * k + 4 * field) as u64;
+        let (_, error) = read(&parts.build());
+        let expected = (codes::DIRECTORY_COUNTS.number(), at);
+        assert_eq!((error.code(), error.offset().0), expected, "packet {k}, field {field}: {error}");
+    }
+}
+
 #[test]
 fn counts_without_vertices_are_refused() {
     let empty = Parts::of(&file(&ProgressiveMesh::default(), 1));
