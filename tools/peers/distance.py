@@ -14,20 +14,26 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
+
+# A level of fewer faces is not looked for as the worst one: a closed surface ends as two opposite triangles.
+MANY_FACES = 100
 
 
 class Distance(TypedDict):
-    """Symmetric distance between two surfaces in % of the diagonal of the original's bounds."""
+    """Symmetric distance between two surfaces in % of the diagonal of the original's bounds, and the share of faces that are
+    turned over [%]."""
 
     mean: float
     max: float
+    turned: float
 
 
 class Direction(TypedDict):
-    """How many faces were looked at, and the share that is turned over [%]."""
+    """How many faces were looked at, and the share that is turned over [%]: of all, of the worst level."""
 
     faces: int
-    flipped: float
+    turned: float
     worst: float
 
 
@@ -37,8 +43,7 @@ def distances(original: Path, samples: int, surfaces: list[Path]) -> list[Distan
 
 
 def directions(original: Path, rows: Path) -> Direction:
-    """Share of the faces of `rows` (level, centre, normal: seven floats each) whose normal is turned by more than 90
-    degrees from that of the nearest point of the original; `worst` is that of the worst level."""
+    """Share of the faces of `rows` (level, centre, normal: seven floats each) that are turned over."""
     return _called("directions", original, rows)
 
 
@@ -53,8 +58,7 @@ def _called(*words: str | Path) -> Any:
 def _measure_distances(original: str, samples: str, surfaces: list[str]) -> list[Distance]:
     import pymeshlab
 
-    meshes = pymeshlab.MeshSet()
-    meshes.load_new_mesh(original)
+    meshes = _loaded(original)
     diagonal = meshes.current_mesh().bounding_box().diagonal()
     half = pymeshlab.PercentageValue(50)
     found: list[Distance] = []
@@ -73,33 +77,55 @@ def _measure_distances(original: str, samples: str, surfaces: list[str]) -> list
             )
             for sampled, target in ((0, other), (other, 0))
         ]
-        mean = sum(way["mean"] for way in ways) / 2
-        found.append({"mean": 100 * mean / diagonal, "max": 100 * max(way["max"] for way in ways) / diagonal})
+        mean, greatest = sum(way["mean"] for way in ways) / 2, max(way["max"] for way in ways)
         meshes.set_current_mesh(other)
+        mesh = meshes.current_mesh()
+        corners = mesh.vertex_matrix()[mesh.face_matrix()]
         meshes.delete_current_mesh()
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        some = np.any(normals != 0, axis=1)
+        turned = _turned(meshes, corners.mean(axis=1)[some], normals[some])
+        share = 100 * float(turned.mean())
+        found.append({"mean": 100 * mean / diagonal, "max": 100 * greatest / diagonal, "turned": share})
     return found
 
 
 def _measure_directions(original: str, rows: str) -> Direction:
+    table = np.fromfile(rows, dtype="<f4").reshape(-1, 7).astype(np.float64)
+    levels = table[:, 0]
+    turned = _turned(_loaded(original), table[:, 1:4], table[:, 4:7])
+    shares = [
+        turned[levels == level].mean() for level in np.unique(levels) if (levels == level).sum() >= MANY_FACES
+    ]
+    worst = 100 * float(max(shares, default=0))
+    return {"faces": len(table), "turned": 100 * float(turned.mean()), "worst": worst}
+
+
+def _loaded(original: str) -> Any:
+    """The original as the first mesh of a set, with normals."""
     import pymeshlab
 
-    table = np.fromfile(rows, dtype="<f4").reshape(-1, 7).astype(np.float64)
-    levels, centres, normals = table[:, 0], table[:, 1:4], table[:, 4:7]
     meshes = pymeshlab.MeshSet()
     meshes.load_new_mesh(original)
     meshes.compute_normal_per_vertex()
+    return meshes
+
+
+def _turned(meshes: Any, centres: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which normals are more than 90 degrees off that of the nearest point of the original, the first mesh of the set."""
+    import pymeshlab
+
     meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=centres, v_normals_matrix=np.zeros_like(normals)))
     meshes.transfer_attributes_per_vertex(
         sourcemesh=0,
-        targetmesh=1,
+        targetmesh=meshes.current_mesh_id(),
         normaltransfer=True,
         colortransfer=False,
         upperbound=pymeshlab.PercentageValue(100),
     )
     there = meshes.current_mesh().vertex_normal_matrix()
-    flipped = np.einsum("ij,ij->i", there, normals) < 0
-    shares = [flipped[levels == level].mean() for level in np.unique(levels)]
-    return {"faces": len(table), "flipped": 100 * float(flipped.mean()), "worst": 100 * float(max(shares))}
+    meshes.delete_current_mesh()
+    return np.einsum("ij,ij->i", there, normals) < 0
 
 
 def _main() -> None:

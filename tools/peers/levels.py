@@ -41,7 +41,7 @@ def check(files: dict[str, Path], programs: Programs) -> tuple[str, int]:
                     form,
                     f"{found['lowest']:,} to {found['highest']:,}, median {found['median']:,}",
                     verdict,
-                    f"{turned['flipped']:.3f} %",
+                    f"{turned['turned']:.3f} %",
                     f"{turned['worst']:.1f} %",
                     f"{turned['faces']:,}",
                 ]
@@ -60,6 +60,6 @@ def check(files: dict[str, Path], programs: Programs) -> tuple[str, int]:
         "Valid: indices below the number of vertices, distinct corners, no corner that is a removed vertex, coincident faces "
         "below 1 % of the vertices. Turned over: the normal is more than 90 degrees off that of the nearest point of the "
         "original surface, by pymeshlab; at most 1,000 random faces of each level; thin parts count a face of the other "
-        "side as turned over.\n\n"
+        "side as turned over. The worst level is that of 100 faces or more.\n\n"
     )
     return head + markdown(columns, rows) + "\n", faults

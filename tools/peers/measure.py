@@ -89,7 +89,7 @@ def _project(plain: Path, programs: Programs, effort: Effort) -> Figures:
         path, written = programs.mesh(plain, form.replace(", ", ".").replace(" ", "-"), *options)
         timed = form in ("coded q14", "raw f32")
         read = programs.measure("stream", path, "--runs", effort.runs if timed else 1)
-        figures[form] = {**read, "seconds": written["seconds"]}
+        figures[form] = {**read, "seconds": written["seconds"], "order_seconds": written["order_seconds"]}
         if timed:
             figures[form] |= programs.replay_memory(path)
     return figures
@@ -124,7 +124,7 @@ def _draco(source: Mesh, effort: Effort) -> Figures:
     for form, bits in _forms().items():
         data = _draco_bytes(source, bits)
         seconds = []
-        for _ in range(effort.runs if source.faces < 400_000 else min(effort.runs, 5)):
+        for _ in range(effort.runs):
             start = time.process_time()
             decoded = DracoPy.decode(data)
             seconds.append(time.process_time() - start)
