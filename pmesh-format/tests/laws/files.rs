@@ -5,8 +5,8 @@ use ivg_wire::{
     ChunkKind, ContentId, record_len, seal_header, splitmix64, write_chunk, write_end, write_record,
 };
 use pmesh_format::{
-    DIRECTORY, EncodeOptions, Header, IndexedMesh, Limits, Packet, ProgressiveMesh, Replay, Step, Wedges,
-    decode_packet, encode,
+    DIRECTORY, EncodeOptions, Header, IndexedMesh, Limits, Mode, Packet, Positions, ProgressiveMesh, Replay,
+    Step, Wedges, decode_packet, encode,
 };
 
 /// Bytes of a directory entry (PMESH-DIR-02), and of a record before its payload.
@@ -116,8 +116,21 @@ pub(crate) fn file(mesh: &ProgressiveMesh, packet: u32) -> Vec<u8> {
     encode(mesh, &EncodeOptions::fixed(packet)).unwrap()
 }
 
-/// Files of all kinds that this crate writes, each with the mesh that it holds.
+/// How packets and positions are stored: every way that this crate writes.
+pub(crate) const STORED: &[(Mode, Positions)] = &[(Mode::Raw, Positions::F32)];
+
+/// A file that is stored in that way.
+pub(crate) fn stored(mesh: &ProgressiveMesh, packet: u32, (mode, positions): (Mode, Positions)) -> Vec<u8> {
+    encode(mesh, &EncodeOptions { mode, positions, ..EncodeOptions::fixed(packet) }).unwrap()
+}
+
+/// Files of all kinds that this crate writes.
 pub(crate) fn samples() -> Vec<Vec<u8>> {
+    STORED.iter().flat_map(|&way| samples_stored(way)).collect()
+}
+
+fn samples_stored(way: (Mode, Positions)) -> Vec<Vec<u8>> {
+    let file = |mesh: &ProgressiveMesh, packet| stored(mesh, packet, way);
     let mut files = vec![file(&ProgressiveMesh::default(), 1), file(&strip(), 1), file(&seam(), 3)];
     for (seed, vertices, rich, packet) in
         [(1, 1, false, 1), (2, 12, false, 5), (3, 14, true, 4), (4, 20, true, 100)]
