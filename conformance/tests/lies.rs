@@ -1,0 +1,60 @@
+//! Every packet of every accepted `.pmesh` vector with every byte changed, its checksum put right: what a fuzzer would find first.
+
+use conformance::oracles::{pmesh_decode, pmesh_lod};
+use conformance::vectors::edit::in_envelope;
+use conformance::vectors::{Format, Vector, vectors};
+use ivg_wire::splitmix64;
+use pmesh_format::{Header, Limits, Step};
+use std::ops::Range;
+
+/// Where the payload of each packet lies, and its record.
+fn packets(file: &[u8]) -> Vec<(Range<usize>, Range<usize>)> {
+    let Ok(Step::Consumed(_, header)) = Header::read(file, &Limits::default()) else { panic!("no header") };
+    let range = |range: Range<u64>| range.start as usize..range.end as usize;
+    (0..header.packet_count())
+        .map(|k| {
+            let record = range(header.packet_range(k));
+            let payload = record.start + 8;
+            (payload..payload + header.packets[k as usize].payload_bytes as usize, record)
+        })
+        .collect()
+}
+
+fn accepted() -> Vec<Vector> {
+    let accepted = vectors().into_iter().filter(|v| v.format == Format::Pmesh && v.code.is_none());
+    // The same packets with another header are those of another vector.
+    accepted
+        .filter(|vector| !["0007-unknown-chunk", "0008-newer-minor"].contains(&vector.name.as_str()))
+        .collect()
+}
+
+#[test]
+fn both_readers_judge_any_changed_byte_alike() {
+    for vector in accepted() {
+        println!("{}", vector.file());
+        for (k, (payload, record)) in packets(&vector.bytes).into_iter().enumerate() {
+            for at in payload {
+                for change in [1, 0x80, 1 + splitmix64(k as u64, at as u64) as u8 % 254] {
+                    let byte = vector.bytes[at] ^ change;
+                    pmesh_decode(&in_envelope(&vector.bytes, record.clone(), at, &[byte]));
+                }
+            }
+        }
+    }
+}
+
+/// Where a change is accepted, the levels are those of both readers.
+#[test]
+fn both_readers_show_the_same_levels_of_changed_files() {
+    for vector in accepted() {
+        println!("{}", vector.file());
+        let packets = packets(&vector.bytes);
+        for n in 0..if packets.is_empty() { 0 } else { 60 } {
+            let choose = |salt: u64, end: usize| (splitmix64(salt, n) % end as u64) as usize;
+            let (payload, record) = packets[choose(1, packets.len())].clone();
+            let at = payload.start + choose(2, payload.len());
+            let byte = vector.bytes[at] ^ (1 << choose(3, 8));
+            pmesh_lod(&in_envelope(&vector.bytes, record, at, &[byte]));
+        }
+    }
+}
