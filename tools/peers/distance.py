@@ -16,6 +16,8 @@ from typing import Any, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes import Mesh, PeersError, write
+
 # A level of fewer faces is not looked for as the worst one: a closed surface ends as two opposite triangles.
 MANY_FACES = 100
 
@@ -45,6 +47,27 @@ def distances(original: Path, samples: int, surfaces: list[Path]) -> list[Distan
 def directions(original: Path, rows: Path) -> Direction:
     """Share of the faces of `rows` (level, centre, normal: seven floats each) that are turned over."""
     return _called("directions", original, rows)
+
+
+def check(folder: Path) -> None:
+    """Surfaces whose distance is known: a square, and the same lifted by a tenth of its diagonal and turned over.
+
+    Raises PeersError if something else is measured: figures of this version of pymeshlab would not be what they are called.
+    """
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
+    square = Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]], np.uint32), 0)
+    lift = np.float32(0.1 * np.sqrt(2))
+    lifted = Mesh(corners + np.array([0, 0, lift], np.float32), square.triangles[:, ::-1], 0)
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / "square.ply", folder / "lifted.ply"]
+    for path, mesh in zip(paths, (square, lifted)):
+        write(path, mesh)
+    found = distances(paths[0], 1000, paths)
+    known: list[Distance] = [{"mean": 0, "max": 0, "turned": 0}, {"mean": 10, "max": 10, "turned": 100}]
+    for measured, expected in zip(found, known):
+        # Positions are 32-bit floats: six digits are right.
+        if any(abs(measured[key] - expected[key]) > 1e-4 for key in ("mean", "max", "turned")):
+            raise PeersError(f"distances are not what they should be: {measured} instead of {expected}")
 
 
 def _called(*words: str | Path) -> Any:

@@ -60,9 +60,11 @@ def _versions(programs: Programs) -> dict[str, str]:
 
 
 def _mesh(files: dict[str, Path], programs: Programs, options: argparse.Namespace) -> None:
+    import distance
     import measure
     import report
 
+    distance.check(programs.out / "check")
     effort = measure.Effort.quick() if options.quick else measure.Effort()
     figures = {}
     for count, (name, path) in enumerate(files.items(), 1):
