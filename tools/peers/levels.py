@@ -33,7 +33,11 @@ def check(files: dict[str, Path], programs: Programs) -> tuple[str, int]:
             sampled = file.with_suffix(".faces")
             found = programs.measure("levels", file, "--count", COUNT, "--seed", SEED, "-o", sampled)
             turned = distance.directions(source, sampled)
-            verdict = "; ".join(f"{fault}: levels {at}" for fault, at in found["faults"].items()) or "valid"
+            faulty = [
+                f"{fault} ({len(at)} levels, {min(at):,} to {max(at):,})"
+                for fault, at in found["faults"].items()
+            ]
+            verdict = "; ".join(faulty) or "valid"
             faults += bool(found["faults"])
             rows.append(
                 [
@@ -57,8 +61,8 @@ def check(files: dict[str, Path], programs: Programs) -> tuple[str, int]:
     ]
     head = (
         f"# {COUNT} random levels of each file (seed {SEED})\n\n"
-        "Valid: indices below the number of vertices, distinct corners, no corner that is a removed vertex, coincident faces "
-        "below 1 % of the vertices. Turned over: the normal is more than 90 degrees off that of the nearest point of the "
+        "Valid: indices below the number of vertices, distinct corners, no corner that is a removed vertex, no two faces "
+        "with the same corners from 1 % of all vertices on. Turned over: the normal is more than 90 degrees off that of the nearest point of the "
         "original surface, by pymeshlab; at most 1,000 random faces of each level; thin parts count a face of the other "
         "side as turned over. The worst level is that of 100 faces or more.\n\n"
     )

