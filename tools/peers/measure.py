@@ -92,7 +92,7 @@ def _project(plain: Path, programs: Programs, effort: Effort) -> Figures:
         path, written = programs.mesh(plain, form.replace(", ", ".").replace(" ", "-"), *options)
         timed = form in ("coded q14", "raw f32")
         read = programs.measure("stream", path, "--runs", effort.runs if timed else 1)
-        figures[form] = {**read, "seconds": written["seconds"], "order_seconds": written["order_seconds"]}
+        figures[form] = read | {key: written[key] for key in ("order_seconds", "order_wall_seconds")}
         if timed:
             figures[form] |= programs.replay_memory(path)
     return figures
