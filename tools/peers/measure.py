@@ -90,12 +90,23 @@ def _project(plain: Path, programs: Programs, effort: Effort) -> Figures:
     figures: Figures = {}
     for form, options in forms.items():
         path, written = programs.mesh(plain, form.replace(", ", ".").replace(" ", "-"), *options)
+        bits = next((bits for bits in BITS if f"q{bits}" in form), 0)
         timed = form in ("coded q14", "raw f32")
         read = programs.measure("stream", path, "--runs", effort.runs if timed else 1)
         figures[form] = read | {key: written[key] for key in ("order_seconds", "order_wall_seconds")}
+        figures[form] |= _same(plain, path, bits, programs)
         if timed:
             figures[form] |= programs.replay_memory(path)
     return figures
+
+
+def _same(plain: Path, file: Path, bits: int, programs: Programs) -> Figures:
+    """Whether the finest level is the mesh that went in."""
+    finest = programs.out / "finest.ply"
+    programs.extract(file, None, finest)
+    # The one form that the measuring program reads.
+    meshes.write(finest, meshes.read(finest))
+    return programs.measure("same", plain, finest, "--bits", bits)
 
 
 def _meshopt(plain: Path, programs: Programs, effort: Effort) -> Figures:

@@ -36,9 +36,9 @@ class Programs:
         processor = order / sum(stages.values()) * (_processor_seconds() - before)
         return path, figures | {"order_seconds": processor, "order_wall_seconds": order}
 
-    def extract(self, file: Path, level: int, out: Path) -> None:
-        """`ivg extract`: the mesh at a level."""
-        run(self.ivg, "extract", file, "--level", level, "-o", out)
+    def extract(self, file: Path, level: int | None, out: Path) -> None:
+        """`ivg extract`: the mesh at a level, or at the finest."""
+        run(self.ivg, "extract", file, "-o", out, *(() if level is None else ("--level", level)))
 
     def version(self) -> str:
         """What `ivg --version` says."""

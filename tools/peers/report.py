@@ -110,8 +110,9 @@ class Report:
         self._add(
             "Meshes",
             "Vertices are those that a face names; the project and Draco store equal positions once. Bits per vertex below "
-            "are bytes by the column V for all tools.",
-            ["V", "F", "unreferenced", "V project", f"V {DRACO}", "plain bytes"],
+            "are bytes by the column V for all tools. Lost and foreign: triangles that the finest level of any file of the "
+            "project lacks or adds, compared by the places of their corners.",
+            ["V", "F", "unreferenced", "V project", f"V {DRACO}", "plain bytes", "lost", "foreign"],
             lambda m: [
                 f"{m['vertices']:,}",
                 f"{m['faces']:,}",
@@ -119,7 +120,13 @@ class Report:
                 f"{m['project']['coded q12']['vertices']:,}",
                 f"{m['draco']['q14']['vertices']:,}",
                 f"{m['plain_bytes']:,}",
+                *(f"{max(form[key] for form in m['project'].values()):,}" for key in ("lost", "foreign")),
             ],
+        )
+        self._target(
+            "triangles of the finest level lost or foreign",
+            lambda m: max(form["lost"] + form["foreign"] for form in m["project"].values()),
+            0,
         )
 
     def _bytes(self) -> None:

@@ -4,6 +4,7 @@ mod codec;
 mod draw;
 mod levels;
 mod mesh;
+mod same;
 mod simplify;
 mod stream;
 mod timing;
@@ -66,6 +67,16 @@ enum Command {
         /// How often it is decoded; the time is the median.
         #[arg(long, default_value_t = 9)]
         runs: usize,
+    },
+    /// Compare the triangles of two meshes by the places of their corners.
+    Same {
+        /// The original.
+        mesh: PathBuf,
+        /// What became of it.
+        other: PathBuf,
+        /// Bits of the lattice along the longest side, at most 16; 0 for positions as they are.
+        #[arg(long, value_parser = clap::value_parser!(u32).range(0..=16))]
+        bits: u32,
     },
     /// The finest level of a progressive mesh with at most so many faces.
     Level {
@@ -145,6 +156,9 @@ fn run(command: Command) -> Result<Value, Failure> {
         Command::Codec { mesh, bits, runs } => codec::measure(&Mesh::read(&mesh)?, bits, runs),
         Command::Simplify { mesh, faces, method, out } => {
             simplify::run(&Mesh::read(&mesh)?, faces, method, &out)
+        }
+        Command::Same { mesh, other, bits } => {
+            Ok(same::compare(&Mesh::read(&mesh)?, &Mesh::read(&other)?, bits))
         }
         Command::Stream { file, runs } => stream::measure(&file, &bytes_of(&file)?, runs),
         Command::Level { file, faces } => {
