@@ -1,7 +1,7 @@
 //! What the encoder writes, against the rules for writers, read here from the bytes.
 
 use crate::files::{ENTRY, Parts, file, random, samples, seam, u32_at, u64_at};
-use pmesh_format::{EncodeOptions, Limits, PacketSize, ProgressiveMesh, check, encode};
+use pmesh_format::{EncodeError, EncodeOptions, Limits, PacketSize, ProgressiveMesh, check, encode};
 
 fn f32_at(bytes: &[u8], at: usize) -> f32 {
     f32::from_bits(u32_at(bytes, at))
@@ -105,4 +105,30 @@ fn every_packet_brings_a_vertex_and_the_first_the_base() {
         let mut parts = Parts::of(&file);
         assert!(u32_at(parts.directory(), 0) >= 3);
     }
+}
+
+#[test]
+fn a_face_with_a_vertex_twice_is_refused_whichever_corners_they_are() {
+    for corners in [[1, 1, 2], [2, 1, 1], [1, 2, 1]] {
+        let mut mesh = random(7, 10, false);
+        mesh.faces[4] = corners;
+        assert_eq!(encode(&mesh, &EncodeOptions::default()), Err(EncodeError::Face { face: 4 }));
+    }
+    // Two wedges of one vertex.
+    let mut mesh = seam();
+    mesh.faces[1] = [2, 0, 3];
+    assert_eq!(encode(&mesh, &EncodeOptions::default()), Err(EncodeError::Face { face: 1 }));
+}
+
+#[test]
+fn the_last_vertices_must_have_wedges_too() {
+    let mut mesh = seam();
+    mesh.wedges.vertices.truncate(4);
+    mesh.wedges.normals.truncate(4);
+    mesh.wedges.uvs.truncate(4);
+    mesh.wedges.colours.truncate(4);
+    mesh.wedge_collapse.clear();
+    mesh.faces.clear();
+    mesh.materials.clear();
+    assert_eq!(encode(&mesh, &EncodeOptions::default()), Err(EncodeError::Wedge { wedge: 4 }));
 }
