@@ -20,6 +20,8 @@ const LENGTH_WEIGHT: f64 = 1e-7;
 #[derive(Debug)]
 pub(crate) struct Costs {
     kind: Cost,
+    /// Area of the whole surface \[m²\].
+    total_area: f64,
     quadrics: Vec<Quadric>,
     /// Each vertex's quadric at its own position.
     own: Vec<f64>,
@@ -29,10 +31,12 @@ impl Costs {
     /// For the uncollapsed surface.
     pub(crate) fn new(kind: Cost, surface: &Surface, ring: &mut Ring) -> Self {
         let mut quadrics = vec![Quadric::default(); surface.positions.len()];
+        let mut total_area = 0.0;
         for f in 0..surface.faces.len() {
             let triangle @ [a, ..] = surface.faces[f].map(|v| surface.positions[v as usize]);
             let normal = twice_area(triangle);
             let twice = normal.length();
+            total_area += 0.5 * twice;
             if twice > 0.0 {
                 for v in surface.faces[f] {
                     quadrics[v as usize].add_plane(normal / twice, a, 0.5 * twice, 0.5 * twice);
@@ -59,17 +63,25 @@ impl Costs {
             }
         }
         let own = quadrics.iter().zip(&surface.positions).map(|(q, &p)| q.at(p)).collect();
-        Self { kind, quadrics, own }
+        Self { kind, total_area, quadrics, own }
     }
 
     /// What moving `u` onto its neighbour `v` costs.
+    ///
+    /// For quadrics: by how much the squared distances to the planes that both stand for grow, divided by the fourth root of
+    /// the area that moves. The sum alone (exponent 0) keeps the mean distance small but gives up thin features, which have
+    /// hardly any area; the mean over the area (exponent 1) keeps the greatest distance small at the mean's cost. Measured
+    /// on six scans and models at four levels each, 1/4 is the least exponent at which no level fell behind on the mean.
     pub(crate) fn of(&self, surface: &Surface, u: u32, v: u32) -> f64 {
         let (from, to) = (surface.positions[u as usize], surface.positions[v as usize]);
         match self.kind {
             Cost::Quadric => {
                 let moving = &self.quadrics[u as usize];
-                let length = LENGTH_WEIGHT * moving.area() * from.distance_squared(to);
-                moving.at(to) + self.own[v as usize] + length
+                let area = moving.area();
+                let length = LENGTH_WEIGHT * area * from.distance_squared(to);
+                let growth = (moving.at(to) + self.own[v as usize] - self.own[u as usize]).max(0.0) + length;
+                // A share of the whole, so that the cost orders the same way at any scale.
+                if area > 0.0 { growth / (area / self.total_area).sqrt().sqrt() } else { growth }
             }
             Cost::Melax => from.distance(to) * curvature(surface, u, v),
         }

@@ -10,8 +10,8 @@ use crate::queue::{Candidate, Queue};
 use crate::rules::{Rules, allowed};
 use crate::surface::{Ring, Surface};
 
-/// Vertices with more faces than this around them are not looked at again after every collapse beside them, but after
-/// one for every eight of their faces: a fan of k triangles would else cost k² steps.
+/// A vertex with more faces than this around it that no collapse was allowed for is not looked at again after every
+/// collapse beside it: a fan of k triangles would else cost k² steps.
 const HUB_FACES: usize = 64;
 /// Coincident faces are avoided while more than one vertex in this many is left (spec PMESH-LVL-03).
 const COINCIDENT_SHARE: usize = 100;
@@ -60,7 +60,7 @@ pub(crate) fn find(
         other: Ring::new(vertices),
         ring,
         queue: Queue::new(vertices),
-        overdue: vec![0; vertices],
+        stale: vec![false; vertices],
         gone: vec![false; vertices],
         left: vertices,
         total: vertices,
@@ -89,8 +89,9 @@ struct Run<'a> {
     ring: Ring,
     other: Ring,
     queue: Queue,
-    /// Collapses beside a vertex since it was last looked at.
-    overdue: Vec<u32>,
+    /// Whether something beside a vertex has collapsed since its candidate was queued. What it costs has hardly ever
+    /// fallen since then, so it is looked at again only when it comes up.
+    stale: Vec<bool>,
     gone: Vec<bool>,
     left: usize,
     total: usize,
@@ -131,7 +132,7 @@ impl Run<'_> {
                 self.refill();
                 continue;
             };
-            if self.gone[v as usize] || self.overdue[u as usize] > 0 {
+            if self.gone[v as usize] || self.stale[u as usize] {
                 self.look(u);
                 continue;
             }
@@ -179,7 +180,7 @@ impl Run<'_> {
     /// Queues the cheapest collapse of `u`, allowed or not: most never come up, so that is found out later. Leaves the
     /// neighbours of `u` in `neighbours`.
     fn look(&mut self, u: u32) {
-        self.overdue[u as usize] = 0;
+        self.stale[u as usize] = false;
         self.surface.neighbours(u, &mut self.neighbours);
         let mut best: Option<Candidate> = None;
         for &v in &self.neighbours {
@@ -236,9 +237,8 @@ impl Run<'_> {
             self.look(v);
             beside.clone_from(&self.neighbours);
             for &x in &beside {
-                let faces = self.surface.around(x).len();
-                self.overdue[x as usize] += 1;
-                if faces <= HUB_FACES || self.overdue[x as usize] as usize * 8 >= faces {
+                self.stale[x as usize] = true;
+                if !self.queue.contains(x) && self.surface.around(x).len() <= HUB_FACES {
                     self.look(x);
                 }
             }

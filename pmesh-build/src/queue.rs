@@ -56,6 +56,11 @@ impl Queue {
         self.settle(place, candidate);
     }
 
+    /// Whether vertex `u` has a candidate.
+    pub(crate) fn contains(&self, u: u32) -> bool {
+        self.places[u as usize] != ABSENT
+    }
+
     /// Takes out the candidate of vertex `u`, if it has one.
     pub(crate) fn remove(&mut self, u: u32) {
         let place = std::mem::replace(&mut self.places[u as usize], ABSENT);
