@@ -6,6 +6,7 @@ from pathlib import Path
 
 import distance
 import meshes
+from meshes import PeersError
 from project import Programs, progress
 from report import markdown
 
@@ -29,7 +30,13 @@ def check(files: dict[str, Path], programs: Programs) -> tuple[str, int]:
         meshes.write(source, meshes.read(path))
         for form, options in FORMS.items():
             progress(f"{name}: {form}")
-            file, _ = programs.mesh(source, form.replace(" ", "-"), *options)
+            try:
+                file, _ = programs.mesh(source, form.replace(" ", "-"), *options)
+            except PeersError as error:
+                progress(f"{name}: {form} is not there: {error}")
+                rows.append([name, form, *["not written"] * 5])
+                faults += 1
+                continue
             sampled = file.with_suffix(".faces")
             found = programs.measure("levels", file, "--count", COUNT, "--seed", SEED, "-o", sampled)
             turned = distance.directions(source, sampled)

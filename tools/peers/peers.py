@@ -79,6 +79,11 @@ def _mesh(files: dict[str, Path], programs: Programs, options: argparse.Namespac
     (programs.out / "mesh.json").write_text(json.dumps(document, indent=1) + "\n")
     print(text, end="")
     progress(f"written: {programs.out / 'mesh.md'}, mesh.json")
+    absent = [
+        f"{name}: {form}" for name, m in figures.items() for form, found in m["project"].items() if not found
+    ]
+    if absent:
+        raise PeersError(f"`ivg mesh` did not write {', '.join(absent)}")
 
 
 def _picture(files: dict[str, Path], programs: Programs, options: argparse.Namespace) -> None:
@@ -96,7 +101,7 @@ def _levels(files: dict[str, Path], programs: Programs, options: argparse.Namesp
     (programs.out / "levels.md").write_text(text)
     print(text, end="")
     if faults:
-        raise PeersError(f"{faults} files have levels that are not valid")
+        raise PeersError(f"{faults} files are not there or have levels that are not valid")
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ from project import Figures
 
 MESHOPT = "meshopt strip + zstd -19"
 OTHERS_NOTE = " The last columns are means of tools that drop components, cluster, or move vertices, with the faces reached."
+# What a cell says whose file `ivg mesh` did not write.
+ABSENT = "not written"
 DRACO = f"Draco cl{DRACO_LEVEL}"
 
 
@@ -37,22 +40,46 @@ class Target:
             "unit": self.unit,
             "stretch": self.stretch,
             "met": all(map(self.holds, self.values.values())),
-            "median": statistics.median(self.values.values()),
-            "values": self.values,
+            "median": _or_none(self.median()),
+            "values": {name: _or_none(value) for name, value in self.values.items()},
         }
 
+    def median(self) -> float:
+        values = list(self.values.values())
+        return math.nan if any(map(math.isnan, values)) else statistics.median(values)
+
     def row(self) -> list[str]:
-        met = [name for name, value in self.values.items() if self.holds(value)]
-        worst = (max if self.at_most else min)(self.values, key=lambda name: self.values[name])
-        verdict = (
-            "met"
-            if len(met) == len(self.values)
-            else f"MISSED on {len(self.values) - len(met)} of {len(self.values)}"
-        )
-        limit = f"{'<=' if self.at_most else '>='} {self.limit:g} {self.unit}".strip()
-        median = f"{statistics.median(self.values.values()):.3g}"
         kind = "stretch" if self.stretch else "target"
-        return [self.name, kind, limit, verdict, median, f"{self.values[worst]:.3g} ({worst})"]
+        limit = f"{'<=' if self.at_most else '>='} {self.limit:g} {self.unit}".strip()
+        if math.isnan(self.median()):
+            return [self.name, kind, limit, ABSENT, "-", "-"]
+        missed = [name for name, value in self.values.items() if not self.holds(value)]
+        verdict = f"MISSED on {len(missed)} of {len(self.values)}" if missed else "met"
+        worst = (max if self.at_most else min)(self.values, key=lambda name: self.values[name])
+        return [
+            self.name,
+            kind,
+            limit,
+            verdict,
+            f"{self.median():.3g}",
+            f"{self.values[worst]:.3g} ({worst})",
+        ]
+
+
+def _or_none(value: float) -> float | None:
+    """JSON has no NaN."""
+    return None if math.isnan(value) else value
+
+
+class Gap(dict[str, Any]):
+    """Figures of a file that was not written: every one is NaN, and so is all that is computed from it."""
+
+    def __missing__(self, key: str) -> float:
+        return math.nan
+
+
+def _with_gaps(forms: dict[str, Figures | None]) -> dict[str, Figures]:
+    return {form: found or Gap() for form, found in forms.items()}
 
 
 def markdown(columns: list[str], rows: list[list[str]]) -> str:
@@ -76,7 +103,7 @@ class Report:
     """Tables of all meshes, in the order of the targets."""
 
     def __init__(self, figures: dict[str, Figures], effort: Effort) -> None:
-        self.figures = figures
+        self.figures = {name: m | {"project": _with_gaps(m["project"])} for name, m in figures.items()}
         self.effort = effort
         self.targets: list[Target] = []
         self.parts: list[str] = []
@@ -96,17 +123,23 @@ class Report:
         return "\n\n".join([head, *self.parts, summary]) + "\n"
 
     def _add(self, title: str, note: str, columns: list[str], cells: Callable[[Figures], list[str]]) -> None:
-        rows = [[name, *cells(figures)] for name, figures in self.figures.items()]
+        rows = [
+            [name, *(ABSENT if "nan" in cell else cell for cell in cells(figures))]
+            for name, figures in self.figures.items()
+        ]
         self.parts.append(f"## {title}\n\n{note}\n\n" + markdown(["mesh", *columns], rows))
 
     def _target(
         self, name: str, value: Callable[[Figures], float], limit: float, *, only: str = "", **how: Any
     ) -> None:
-        values = {mesh: value(figures) for mesh, figures in self.figures.items() if only in ("", mesh)}
+        values = {mesh: float(value(figures)) for mesh, figures in self.figures.items() if only in ("", mesh)}
         if values:
             self.targets.append(Target(name, values, limit, **how))
 
     def _meshes(self) -> None:
+        def written(m: Figures) -> list[Figures]:
+            return [form for form in m["project"].values() if form]
+
         self._add(
             "Meshes",
             "Vertices are those that a face names; the project and Draco store equal positions once. Bits per vertex below "
@@ -117,15 +150,15 @@ class Report:
                 f"{m['vertices']:,}",
                 f"{m['faces']:,}",
                 f"{m['unreferenced']:,}",
-                f"{m['project']['coded q12']['vertices']:,}",
+                f"{m['project']['raw f32']['vertices']:,}",
                 f"{m['draco']['q14']['vertices']:,}",
                 f"{m['plain_bytes']:,}",
-                *(f"{max(form[key] for form in m['project'].values()):,}" for key in ("lost", "foreign")),
+                *(f"{max(form[key] for form in written(m)):,}" for key in ("lost", "foreign")),
             ],
         )
         self._target(
             "triangles of the finest level lost or foreign",
-            lambda m: max(form["lost"] + form["foreign"] for form in m["project"].values()),
+            lambda m: max(form["lost"] + form["foreign"] for form in written(m)),
             0,
         )
 
