@@ -1,6 +1,7 @@
 //! The command line: names, defaults, units. Nothing here computes.
 
 mod grid;
+mod mesh;
 mod registry;
 
 use std::net::SocketAddr;
@@ -11,6 +12,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 pub(crate) use self::grid::{
     BakeSettings, EstimatorArgument, FilterArgument, RecodeArguments, ReconstructionArgument, SampleArguments,
 };
+pub(crate) use self::mesh::{ExtractArguments, MeshArguments, StorageArguments};
 use crate::scene_args::{Bounds, GridSize, PictureSize, ScheduleArgument};
 
 /// Streams lit 3D scenes: bakes indirect light into an irradiance vector grid, orders meshes coarse-to-fine, serves both,
@@ -121,50 +123,6 @@ pub(crate) struct BakeArguments {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct MeshArguments {
-    /// Mesh file: .obj, .gltf, .glb or .ply, also .gz or .zst. All its meshes are joined into one.
-    pub(crate) mesh: PathBuf,
-    /// Output file.
-    #[arg(short, long, value_name = "FILE.pmesh")]
-    pub(crate) out: PathBuf,
-    /// How positions are stored.
-    #[arg(long, value_enum, default_value_t = PositionsArgument::F32)]
-    pub(crate) positions: PositionsArgument,
-    /// How packets are stored.
-    #[arg(long, value_enum, default_value_t = ModeArgument::Raw)]
-    pub(crate) mode: ModeArgument,
-    /// The cost that orders the collapses.
-    #[arg(long, value_enum, default_value_t = CostArgument::Quadric)]
-    pub(crate) cost: CostArgument,
-    /// Vertices a packet [default: packets that grow with the mesh].
-    #[arg(long, value_name = "N", value_parser = crate::scene_args::count::<u32>)]
-    pub(crate) packet: Option<u32>,
-    /// Print figures as JSON.
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PositionsArgument {
-    /// 32-bit floats about an f64 origin.
-    F32,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ModeArgument {
-    /// Arrays as a GPU takes them.
-    Raw,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum CostArgument {
-    /// Area-weighted quadric error.
-    Quadric,
-    /// Edge length times curvature, as Melax 1998.
-    Melax,
-}
-
-#[derive(Debug, Args)]
 pub(crate) struct PackArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
@@ -173,6 +131,8 @@ pub(crate) struct PackArguments {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) bake: BakeSettings,
+    #[command(flatten)]
+    pub(crate) storage: StorageArguments,
     /// Vertices of each mesh in scene.glb, for viewers that know nothing of the streams.
     #[arg(long, value_name = "N", default_value_t = 500)]
     pub(crate) coarse_vertices: u32,
@@ -188,25 +148,6 @@ pub(crate) struct FileArguments {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ExtractArguments {
-    /// An .ivg or .pmesh file.
-    pub(crate) file: PathBuf,
-    /// Output. For a grid .npy: f32 of shape (nz, ny, nx, 6 hemispheres +x -x +y -y +z -z, 3 colours, 3 components), W/m²;
-    /// if it stores radiance harmonics (nz, ny, nx, 3 colours, 9 coefficients), W/(m² sr). For a mesh .ply or .obj.
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) out: PathBuf,
-    /// Use the first N bytes of the file only: what a client knows then.
-    #[arg(long, value_name = "N")]
-    pub(crate) bytes: Option<u64>,
-    /// Number of vertices of the mesh [default: as many as there are].
-    #[arg(long, value_name = "N")]
-    pub(crate) level: Option<u32>,
-    /// Fill missing and invalid vertices of a grid by push-pull instead of leaving them NaN.
-    #[arg(long)]
-    pub(crate) fill: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -1,8 +1,8 @@
 //! Between the meshes of a scene and those that have a collapse order.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::DVec3;
 use ivg_scene::{Material, Mesh, Scene};
-use pmesh_format::{IndexedMesh, Wedges};
+use pmesh_format::{Header, IndexedMesh, Wedges};
 
 use crate::failure::Failure;
 
@@ -80,26 +80,11 @@ pub(crate) fn plain_bytes(mesh: &IndexedMesh) -> u64 {
     (positions * 12 + attributes + mesh.triangles.len() * 12) as u64
 }
 
-/// A mesh at a level as a scene mesh with exactly one vertex for each of its vertices.
-///
-/// Normals and texture coordinates are kept if every vertex has one wedge; a vertex on a seam has several values of each,
-/// of which a plain mesh file could keep only one. The second value tells whether something was left out for that.
-pub(crate) fn scene_mesh(mesh: &IndexedMesh, name: &str) -> (Mesh, bool) {
-    let seams = mesh.wedges.len() != mesh.positions.len();
-    let attributes = !(mesh.wedges.normals.is_empty() && mesh.wedges.uvs.is_empty());
-    let mut out = Mesh {
-        name: name.to_owned(),
-        origin: DVec3::from_array(mesh.origin),
-        positions: mesh.positions.iter().map(|&p| Vec3::from_array(p)).collect(),
-        triangles: (0..mesh.triangles.len()).map(|triangle| mesh.triangle_vertices(triangle)).collect(),
-        triangle_materials: (0..mesh.triangles.len())
-            .map(|triangle| mesh.material(triangle).into())
-            .collect(),
-        ..Mesh::default()
-    };
-    if !seams {
-        out.normals = mesh.wedges.normals.iter().map(|&n| Vec3::from_array(n)).collect();
-        out.uvs = mesh.wedges.uvs.iter().map(|&uv| Vec2::from_array(uv)).collect();
-    }
-    (out, seams && attributes)
+/// How far a coordinate can be from what was written: half a step of the lattice \[m\]; 0 where positions are exact.
+pub(crate) fn position_error(header: &Header) -> f64 {
+    let Some(bits) = header.positions.bits() else { return 0.0 };
+    let [low, high] = header.bounds;
+    let longest =
+        low.iter().zip(&high).map(|(&low, &high)| f64::from(high) - f64::from(low)).fold(0.0, f64::max);
+    longest / f64::from((1u32 << bits) - 1) / 2.0
 }

@@ -6,6 +6,7 @@
 
 mod args;
 mod baking;
+mod breakdown;
 mod commands;
 mod convert;
 mod failure;

@@ -27,7 +27,11 @@ pub(crate) struct Meshes {
 
 /// Orders and encodes every mesh of more than `coarse_vertices` vertices; smaller ones are not worth a stream of their
 /// own, and go into `scene.glb` as they are.
-pub(crate) fn order_meshes(scene: &Scene, coarse_vertices: u32) -> Result<Meshes, Failure> {
+pub(crate) fn order_meshes(
+    scene: &Scene,
+    coarse_vertices: u32,
+    options: &EncodeOptions,
+) -> Result<Meshes, Failure> {
     let start = Instant::now();
     let mut meshes = Meshes { files: Vec::new(), plain_bytes: 0, vertices: 0, seconds: 0.0 };
     let total: usize = scene.meshes.iter().map(|mesh| mesh.positions.len()).sum();
@@ -45,8 +49,7 @@ pub(crate) fn order_meshes(scene: &Scene, coarse_vertices: u32) -> Result<Meshes
                 |error: &dyn std::fmt::Display| Failure::new(format_args!("mesh \"{}\": {error}", mesh.name));
             let (progressive, _) = pmesh_build::build(&indexed, &BuildOptions::default(), &mut progress)
                 .map_err(|error| named(&error))?;
-            let file = pmesh_format::encode(&progressive, &EncodeOptions::default())
-                .map_err(|error| named(&error))?;
+            let file = pmesh_format::encode(&progressive, options).map_err(|error| named(&error))?;
             meshes.plain_bytes += convert::plain_bytes(&progressive.full());
             meshes.vertices += progressive.positions.len() as u64;
             meshes.files.push(Some(file));

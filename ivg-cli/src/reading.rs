@@ -61,3 +61,12 @@ pub(crate) fn mesh(path: &Path, bytes: &[u8]) -> Result<(Replay, u64), Failure> 
         None => Err(Failure::file(path, "the bytes end inside the header; a client knows nothing yet")),
     }
 }
+
+/// The header of a mesh.
+pub(crate) fn mesh_header(path: &Path, bytes: &[u8]) -> Result<pmesh_format::Header, Failure> {
+    let mut decoder = pmesh_format::Decoder::new(pmesh_format::Limits::default());
+    match decoder.push(bytes).map_err(|error| Failure::file(path, error))? {
+        Step::Consumed(_, pmesh_format::Event::Header(header)) => Ok(header.clone()),
+        _ => Err(Failure::file(path, "the file ends inside its header")),
+    }
+}

@@ -83,6 +83,6 @@ pub use client::{
 pub use extensions::{ExtensionError, FileEntry, IRRADIANCE_GRID, PROGRESSIVE_MESH};
 pub use http::media::{MEDIA_TYPE_IVG, MEDIA_TYPE_PMESH};
 pub use local::{LoadError, LocalScene};
-pub use manifest::{Manifest, ManifestError, MeshEntry};
+pub use manifest::{Manifest, ManifestError, MeshEntry, scene_mesh};
 pub use pack::{PackError, PackInput, PackOptions, PackReport, pack};
 pub use server::{ServeError, ServerHandle, ServerOptions, serve};

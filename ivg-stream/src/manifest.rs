@@ -94,8 +94,14 @@ impl MeshEntry {
     }
 }
 
-/// A mesh of a progressive mesh as a mesh of a scene: one vertex a wedge.
-pub(crate) fn scene_mesh(mesh: &IndexedMesh, name: String, material: impl Fn(u16) -> u32) -> Mesh {
+/// A level of a progressive mesh as a mesh of a scene: one vertex a wedge, so that every corner keeps its normal and texture
+/// coordinate; colours, which meshes of scenes do not have, are left out. `material` gives the scene's number of a material.
+///
+/// # Panics
+///
+/// If a wedge names a vertex that the mesh does not have; [`pmesh_format::check_level`] finds that out without a panic.
+#[must_use]
+pub fn scene_mesh(mesh: &IndexedMesh, name: String, material: impl Fn(u16) -> u32) -> Mesh {
     let wedges = &mesh.wedges;
     Mesh {
         name,

@@ -2,6 +2,8 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use ivg_format::{Encoding, Order};
+use pmesh_build::Cost;
+use pmesh_format::{Mode, Positions};
 
 /// The name of an encoding.
 pub(crate) fn encoding() -> impl TypedValueParser<Value = Encoding> {
@@ -20,6 +22,45 @@ pub(crate) fn order() -> impl TypedValueParser<Value = Order> {
         Order::ALL.iter().map(|order| PossibleValue::new(order.name()).help(order_text(order.name())));
     PossibleValuesParser::new(values)
         .try_map(|name| Order::from_name(&name).ok_or("not an order of this release"))
+}
+
+/// The name of a way to store packets.
+pub(crate) fn mode() -> impl TypedValueParser<Value = Mode> {
+    let text = |mode| match mode {
+        Mode::Raw => "Arrays as GPUs take them; the fastest to read",
+        Mode::Coded => "Entropy coded; the smallest",
+    };
+    let values = Mode::ALL.iter().map(|&mode| PossibleValue::new(mode.name()).help(text(mode)));
+    PossibleValuesParser::new(values)
+        .try_map(|name| Mode::from_name(&name).ok_or("not a mode of this release"))
+}
+
+/// The name of a way to store positions.
+pub(crate) fn positions() -> impl TypedValueParser<Value = Positions> {
+    let values = Positions::ALL.iter().map(|positions| {
+        let value = PossibleValue::new(positions.name());
+        match positions.bits() {
+            None => value.help("32-bit floats, exact"),
+            Some(bits) => value.help(format!("{bits} bits along the longest side")),
+        }
+    });
+    PossibleValuesParser::new(values)
+        .try_map(|name| Positions::from_name(&name).ok_or("not an encoding of positions of this release"))
+}
+
+/// The name of a cost of collapses.
+pub(crate) fn cost() -> impl TypedValueParser<Value = Cost> {
+    let values = Cost::ALL.iter().map(|cost| PossibleValue::new(cost.name()).help(cost_text(cost.name())));
+    PossibleValuesParser::new(values)
+        .try_map(|name| Cost::from_name(&name).ok_or("not a cost of this release"))
+}
+
+fn cost_text(name: &str) -> &'static str {
+    match name {
+        "quadric" => "Area-weighted quadric error: the most accurate levels",
+        "melax" => "Edge length times curvature, as Melax 1998 and Web3D 2008 have it; for comparison",
+        _ => "See the documentation of pmesh-build",
+    }
 }
 
 fn encoding_text(name: &str) -> &'static str {

@@ -3,9 +3,9 @@ use std::process::ExitCode;
 use ivg_format::{Quantity, Values};
 use ivg_grid::{FillOptions, IrradianceGrid};
 use ivg_scene::export;
+use pmesh_format::{IndexedMesh, Replay};
 
 use crate::args::ExtractArguments;
-use crate::convert;
 use crate::failure::Failure;
 use crate::kind::FileKind;
 use crate::{files, npy, reading};
@@ -23,8 +23,10 @@ pub(crate) fn run(arguments: &ExtractArguments) -> Result<ExitCode, Failure> {
 }
 
 fn grid(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure> {
-    if arguments.level.is_some() {
-        return Err(Failure::usage("--level is for .pmesh files; a grid is cut with --bytes"));
+    if arguments.level.is_some() || arguments.error.is_some() || arguments.faces.is_some() {
+        return Err(Failure::usage(
+            "--level, --error and --faces are for .pmesh files; a grid is cut with --bytes",
+        ));
     }
     files::require_extension(&arguments.out, &["npy"])?;
     let (header, mut grid, used) = reading::grid(&arguments.file, bytes)?;
@@ -100,10 +102,13 @@ fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
     }
     let extension = files::require_extension(&arguments.out, &["ply", "obj"])?;
     let (mut replay, used) = reading::mesh(&arguments.file, bytes)?;
-    let range = replay.levels().ok_or_else(|| {
-        Failure::file(&arguments.file, "the first packet has not arrived whole; there is no level yet")
-    })?;
-    let level = arguments.level.unwrap_or(*range.end());
+    let (Some(range), finest) = (replay.levels(), replay.header().vertex_count) else {
+        return Err(Failure::file(
+            &arguments.file,
+            "the first packet has not arrived whole; there is no level yet",
+        ));
+    };
+    let level = wanted_level(arguments, &replay).unwrap_or(*range.end());
     if !range.contains(&level) {
         let what = format!("level {level} is not there: {} to {} are", range.start(), range.end());
         return Err(Failure::file(&arguments.file, what));
@@ -112,23 +117,44 @@ fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
     let mesh = replay.mesh();
     let name =
         arguments.file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    let (out, attributes_left_out) = convert::scene_mesh(&mesh, &name);
+    let out = ivg_stream::scene_mesh(&mesh, name, u32::from);
     let mut bytes = Vec::new();
     let written = match extension {
         "ply" => export::write_ply(&out, &mut bytes),
-        _ => export::write_obj(&out, &mut bytes),
+        _ => export::write_obj_joined(&out, &mesh.wedges.vertices, &mut bytes),
     };
     written.map_err(|error| Failure::file(&arguments.out, error))?;
     files::write(&arguments.out, &bytes)?;
-    if attributes_left_out {
-        eprintln!("ivg: warning: the mesh has seams; its normals and texture coordinates are left out");
+    if !mesh.wedges.colours.is_empty() {
+        eprintln!("ivg: warning: {}: the colours of the mesh are left out", arguments.out.display());
+    }
+    if extension == "ply" && mesh.wedges.len() > mesh.positions.len() {
+        eprintln!(
+            "ivg: note: {}: {} of the {} vertices lie on seams twice or more often and are written once for each of their \
+             attributes; .obj has them once",
+            arguments.out.display(),
+            on_seams(&mesh),
+            mesh.positions.len(),
+        );
     }
     files::print(&format!(
-        "{}: level {level} of {}: {} vertices, {} faces; {used} bytes used\n",
+        "{}: level {level} of {finest}: {} vertices, {} faces, error at most {} m; {used} bytes used\n",
         arguments.out.display(),
-        range.end(),
         mesh.positions.len(),
         mesh.triangles.len(),
+        replay.error(),
     ))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The level that the arguments ask for, in whichever way.
+fn wanted_level(arguments: &ExtractArguments, replay: &Replay) -> Option<u32> {
+    let by_error = || arguments.error.and_then(|error| replay.level_of_error(error));
+    let by_faces = || arguments.faces.and_then(|faces| replay.level_of_faces(faces));
+    arguments.level.or_else(by_error).or_else(by_faces)
+}
+
+/// Vertices with more than one wedge.
+fn on_seams(mesh: &IndexedMesh) -> usize {
+    mesh.wedges.vertices.chunk_by(|a, b| a == b).filter(|wedges| wedges.len() > 1).count()
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::args::FileArguments;
 use crate::failure::Failure;
 use crate::kind::FileKind;
-use crate::{files, table};
+use crate::{convert, files, table};
 
 /// What a file says about itself: fields for people and for programs, and its parts.
 struct Description {
@@ -176,11 +176,18 @@ fn mesh(path: &Path, bytes: &[u8]) -> Result<Description, Failure> {
     };
     for k in 0..header.packet_count() {
         let range = header.packet_range(k);
-        parts.push(Part { what: format!("packet {k}"), offset: range.start, bytes: range.end - range.start });
+        let entry = &header.packets[k as usize];
+        let what = format!("packet {k}: levels to {}, error {} m", entry.vertices.end, entry.error);
+        parts.push(Part { what, offset: range.start, bytes: range.end - range.start });
     }
     let end = header.end_range();
     parts.push(Part { what: "end".to_owned(), offset: end.start, bytes: end.end - end.start });
     Ok(Description { fields: mesh_fields(header, bytes.len()), parts, unread: "packets" })
+}
+
+/// To a tenth.
+fn rounded(value: f64) -> Value {
+    ((10.0 * value).round() / 10.0).into()
 }
 
 fn mesh_fields(header: &pmesh_format::Header, length: usize) -> Vec<(&'static str, Value)> {
@@ -204,7 +211,13 @@ fn mesh_fields(header: &pmesh_format::Header, length: usize) -> Vec<(&'static st
         ("wedges", header.wedge_count.into()),
         ("faces", header.face_count.into()),
         ("base_vertices", header.base_vertices.into()),
+        ("mode", header.mode.name().into()),
+        ("positions", header.positions.name().into()),
+        ("position_error_m", convert::position_error(header).into()),
+        ("bits_per_vertex", rounded(8.0 * header.file_bytes as f64 / f64::from(header.vertex_count.max(1)))),
         ("attributes", json!(present)),
+        ("normal_bits", header.normal_bits.into()),
+        ("uv_bits", header.uv_bits.into()),
         ("origin", json!(header.origin)),
         ("lower_bound", json!(header.bounds[0])),
         ("upper_bound", json!(header.bounds[1])),

@@ -1,80 +1,63 @@
+use std::cell::RefCell;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use ivg_scene::import::{self, ImportOptions};
-use pmesh_build::{BuildOptions, BuildReport, Cost};
-use pmesh_format::EncodeOptions;
-use serde_json::json;
+use pmesh_build::{BuildOptions, BuildReport};
+use pmesh_format::{EncodeOptions, Header, ProgressiveMesh};
+use serde_json::{Value, json};
 
-use crate::args::{CostArgument, MeshArguments, ModeArgument, PositionsArgument};
-use crate::convert;
+use crate::args::MeshArguments;
+use crate::breakdown::Breakdown;
 use crate::failure::Failure;
 use crate::progress::FractionBar;
-use crate::{files, table};
+use crate::{breakdown, convert, files, reading, table};
 
 pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
-    // Each has one value in this release; the match keeps the names and the encoder's options together.
-    let (PositionsArgument::F32, ModeArgument::Raw) = (arguments.positions, arguments.mode);
     files::require_extension(&arguments.out, &["pmesh"])?;
-    let start = Instant::now();
+    let mut watch = Watch::start();
     let scene = import::load(&arguments.mesh, &ImportOptions::default()).map_err(Failure::new)?;
     scene.check().map_err(Failure::new)?;
     let mesh = convert::joined_mesh(&scene)?;
-    let read = start.elapsed().as_secs_f64();
+    watch.lap("read");
 
-    let start = Instant::now();
+    let options = BuildOptions { cost: arguments.cost, ..BuildOptions::default() };
+    let watch = RefCell::new(watch);
     let bar = FractionBar::new("order");
-    let options = BuildOptions {
-        cost: match arguments.cost {
-            CostArgument::Quadric => Cost::Quadric,
-            CostArgument::Melax => Cost::Melax,
-        },
-        ..BuildOptions::default()
-    };
-    let built = pmesh_build::build(&mesh, &options, &mut |done| bar.set(done));
+    let mut calls = 0;
+    let built = pmesh_build::build(&mesh, &options, &mut |done| {
+        calls += 1;
+        // Called with 0 at the beginning and when the mesh is clean.
+        if calls == 2 {
+            watch.borrow_mut().lap("clean");
+        }
+        bar.set(done);
+    });
     bar.finish();
+    let mut watch = watch.into_inner();
     let (progressive, report) = built.map_err(|error| Failure::file(&arguments.mesh, error))?;
-    let order = start.elapsed().as_secs_f64();
+    watch.lap("order");
 
-    let start = Instant::now();
-    let options = match arguments.packet {
-        Some(vertices) => EncodeOptions::fixed(vertices),
-        None => EncodeOptions::default(),
-    };
-    let file = pmesh_format::encode(&progressive, &options).map_err(Failure::new)?;
-    let encode = start.elapsed().as_secs_f64();
+    let encode_options = arguments.options();
+    let file = pmesh_format::encode(&progressive, &encode_options)
+        .map_err(|error| Failure::file(&arguments.mesh, error))?;
+    watch.lap("encode");
     files::write(&arguments.out, &file)?;
 
-    let vertices = progressive.positions.len();
-    let base = progressive.base_vertices as usize;
-    let plain = convert::plain_bytes(&progressive.full());
+    let written = Written {
+        arguments,
+        progressive: &progressive,
+        report: &report,
+        options: &encode_options,
+        header: reading::mesh_header(&arguments.out, &file)?,
+        breakdown: breakdown::of(&file).map_err(|error| Failure::file(&arguments.out, error))?,
+        bytes: file.len(),
+        seconds: watch.laps,
+    };
     if arguments.json {
-        let figures = json!({
-            "file": arguments.out,
-            "bytes": file.len(),
-            "plain_bytes": plain,
-            "vertices": vertices,
-            "wedges": progressive.wedges.len(),
-            "faces": progressive.faces.len(),
-            "base_vertices": base,
-            "levels": vertices - base + 1,
-            "findings": findings(&report).collect::<std::collections::BTreeMap<_, _>>(),
-            "seconds": { "read": read, "order": order, "encode": encode },
-        });
-        files::print(&format!("{figures}\n"))?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    files::print(&format!(
-        "{}: {vertices} vertices, {} faces, {} levels from {base} vertices on\n{} ({:+.1} % against plain arrays); read {read:.2} s, ordered {order:.2} s ({:.1} us a vertex), encoded {encode:.2} s\n",
-        arguments.out.display(),
-        progressive.faces.len(),
-        vertices - base + 1,
-        table::bytes(file.len() as u64),
-        100.0 * (file.len() as f64 / plain as f64 - 1.0),
-        1e6 * order / vertices.max(1) as f64,
-    ))?;
-    for (what, count) in findings(&report) {
-        files::print(&format!("{count:>9}  {what}\n"))?;
+        files::print(&format!("{}\n", written.json()))?;
+    } else {
+        files::print(&written.text())?;
     }
     if report.precision_lost() {
         eprintln!(
@@ -85,6 +68,122 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
         );
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Wall time by stage \[s\].
+struct Watch {
+    last: Instant,
+    laps: Vec<(&'static str, f64)>,
+}
+
+impl Watch {
+    fn start() -> Self {
+        Self { last: Instant::now(), laps: Vec::new() }
+    }
+
+    /// Ends a stage; the next one begins.
+    fn lap(&mut self, stage: &'static str) {
+        self.laps.push((stage, self.last.elapsed().as_secs_f64()));
+        self.last = Instant::now();
+    }
+}
+
+/// What was written, and what there is to say of it.
+struct Written<'a> {
+    arguments: &'a MeshArguments,
+    progressive: &'a ProgressiveMesh,
+    report: &'a BuildReport,
+    options: &'a EncodeOptions,
+    header: Header,
+    breakdown: Breakdown,
+    bytes: usize,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+impl Written<'_> {
+    fn vertices(&self) -> usize {
+        self.progressive.positions.len()
+    }
+
+    fn levels(&self) -> usize {
+        self.vertices() - self.progressive.base_vertices as usize + 1
+    }
+
+    fn bits_per_vertex(&self) -> f64 {
+        8.0 * self.bytes as f64 / self.vertices().max(1) as f64
+    }
+
+    fn json(&self) -> Value {
+        let Self { arguments, progressive, options, header, .. } = self;
+        json!({
+            "file": arguments.out,
+            "bytes": self.bytes,
+            "bits_per_vertex": self.bits_per_vertex(),
+            "plain_bytes": convert::plain_bytes(&progressive.full()),
+            "mode": options.mode.name(),
+            "positions": options.positions.name(),
+            "position_error_m": convert::position_error(header),
+            "cost": arguments.cost.name(),
+            "vertices": self.vertices(),
+            "wedges": progressive.wedges.len(),
+            "faces": progressive.faces.len(),
+            "base_vertices": progressive.base_vertices,
+            "levels": self.levels(),
+            "packets": header.packet_count(),
+            "parts": named(&self.breakdown),
+            "findings": named(&findings(self.report).collect::<Vec<_>>()),
+            "seconds": named(&self.seconds),
+        })
+    }
+
+    fn text(&self) -> String {
+        let Self { arguments, progressive, options, header, .. } = self;
+        let plain = convert::plain_bytes(&progressive.full());
+        let mut text = format!(
+            "{}: {} vertices, {} wedges, {} faces, {} levels from {} vertices on\n{}, {:.1} bits a vertex ({:+.1} % against plain arrays); {} packets, {}, positions {}",
+            files::shown(&arguments.out.display().to_string()),
+            self.vertices(),
+            progressive.wedges.len(),
+            progressive.faces.len(),
+            self.levels(),
+            progressive.base_vertices,
+            table::bytes(self.bytes as u64),
+            self.bits_per_vertex(),
+            100.0 * (self.bytes as f64 / plain.max(1) as f64 - 1.0),
+            header.packet_count(),
+            options.mode.name(),
+            options.positions.name(),
+        );
+        match convert::position_error(header) {
+            0.0 => text.push_str(", exact\n"),
+            error => text.push_str(&format!(", at most {error:.3e} m off in each coordinate\n")),
+        }
+        for (part, bytes) in &self.breakdown {
+            text.push_str(&format!("{bytes:>12} B  {part}\n"));
+        }
+        let stages: Vec<String> =
+            self.seconds.iter().map(|(stage, seconds)| format!("{stage} {seconds:.2} s")).collect();
+        let order =
+            self.seconds.iter().find(|(stage, _)| *stage == "order").map_or(0.0, |(_, seconds)| *seconds);
+        text.push_str(&format!(
+            "{} ({:.1} us a vertex to order)\n",
+            stages.join(", "),
+            1e6 * order / self.vertices().max(1) as f64
+        ));
+        for (what, count) in findings(self.report) {
+            text.push_str(&format!("{count:>12}    {what}\n"));
+        }
+        text
+    }
+}
+
+/// Pairs as an object, in their order.
+fn named<T: Copy + Into<Value>>(pairs: &[(&str, T)]) -> Value {
+    pairs
+        .iter()
+        .map(|&(name, value)| (name.to_owned(), value.into()))
+        .collect::<serde_json::Map<_, _>>()
+        .into()
 }
 
 /// What the build found and did, as (name, count), without what did not happen.

@@ -1,0 +1,101 @@
+//! Arguments of the commands that write and read progressive meshes.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use pmesh_build::Cost;
+use pmesh_format::{EncodeOptions, Mode, PacketSize, Positions};
+
+use super::registry;
+
+#[derive(Debug, Args)]
+pub(crate) struct MeshArguments {
+    /// Mesh file: .obj, .gltf, .glb or .ply, also .gz or .zst. All its meshes are joined into one.
+    pub(crate) mesh: PathBuf,
+    /// Output file.
+    #[arg(short, long, value_name = "FILE.pmesh")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) storage: StorageArguments,
+    /// The cost that orders the collapses.
+    #[arg(long, default_value = "quadric", value_parser = registry::cost())]
+    pub(crate) cost: Cost,
+    /// Vertices a packet, the same in each.
+    #[arg(long, value_name = "N", value_parser = crate::scene_args::count::<u32>, conflicts_with = "growth")]
+    pub(crate) packet: Option<u32>,
+    /// Vertices a packet as a share of those before it, in percent [default: 30].
+    #[arg(long, value_name = "PERCENT", value_parser = crate::scene_args::count::<u32>)]
+    pub(crate) growth: Option<u32>,
+    /// Print figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// How progressive meshes are stored.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct StorageArguments {
+    /// How positions are stored; with qN each coordinate is off by at most half a step, of which there are 2^N - 1 along the
+    /// longest side of the mesh.
+    #[arg(long, default_value = "f32", value_parser = registry::positions())]
+    pub(crate) positions: Positions,
+    /// How packets are stored.
+    #[arg(long, default_value = "raw", value_parser = registry::mode())]
+    pub(crate) mode: Mode,
+    /// Bits of each of the two components of a normal, 4 to 16; coded mode only, raw mode stores them exactly.
+    #[arg(long, value_name = "BITS", default_value_t = 10, value_parser = clap::value_parser!(u8).range(4..=16))]
+    pub(crate) normal_bits: u8,
+    /// Bits of each texture coordinate between the least and the greatest of the mesh, 4 to 16; coded mode only, raw mode stores
+    /// them exactly.
+    #[arg(long, value_name = "BITS", default_value_t = 12, value_parser = clap::value_parser!(u8).range(4..=16))]
+    pub(crate) uv_bits: u8,
+}
+
+impl StorageArguments {
+    /// The encoder's options.
+    pub(crate) fn options(&self) -> EncodeOptions {
+        let Self { positions, mode, normal_bits, uv_bits } = *self;
+        EncodeOptions { positions, mode, normal_bits, uv_bits, ..EncodeOptions::default() }
+    }
+}
+
+impl MeshArguments {
+    /// The encoder's options.
+    pub(crate) fn options(&self) -> EncodeOptions {
+        let options = self.storage.options();
+        let packets = match (self.packet, self.growth, options.packets) {
+            (Some(vertices), ..) => PacketSize::Fixed(vertices),
+            (None, Some(percent), PacketSize::Growing { first, most, .. }) => {
+                PacketSize::Growing { first, percent, most }
+            }
+            (None, _, packets) => packets,
+        };
+        EncodeOptions { packets, ..options }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExtractArguments {
+    /// An .ivg or .pmesh file.
+    pub(crate) file: PathBuf,
+    /// Output. For a grid .npy: f32 of shape (nz, ny, nx, 6 hemispheres +x -x +y -y +z -z, 3 colours, 3 components), W/m²;
+    /// if it stores radiance harmonics (nz, ny, nx, 3 colours, 9 coefficients), W/(m² sr). For a mesh .obj, whose faces have
+    /// numbers of their own for normals and texture coordinates, or .ply, which has no such numbers: there a vertex on a seam
+    /// is written once for each of its values.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Use the first N bytes of the file only: what a client knows then.
+    #[arg(long, value_name = "N")]
+    pub(crate) bytes: Option<u64>,
+    /// Number of vertices of the mesh [default: as many as there are].
+    #[arg(long, value_name = "N", group = "chosen_level")]
+    pub(crate) level: Option<u32>,
+    /// The coarsest level whose stored error is at most so many metres.
+    #[arg(long, value_name = "METRES", group = "chosen_level", value_parser = crate::scene_args::positive)]
+    pub(crate) error: Option<f32>,
+    /// The finest level of at most so many faces.
+    #[arg(long, value_name = "N", group = "chosen_level", value_parser = crate::scene_args::count::<u32>)]
+    pub(crate) faces: Option<u32>,
+    /// Fill missing and invalid vertices of a grid by push-pull instead of leaving them NaN.
+    #[arg(long)]
+    pub(crate) fill: bool,
+}

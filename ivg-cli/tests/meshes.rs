@@ -1,0 +1,204 @@
+//! `mesh`, and `extract`, `info` and `check` of what it writes.
+
+#[allow(dead_code, reason = "shared with the other tests, which use other parts")]
+mod support;
+
+use serde_json::Value;
+use support::{Workplace, text};
+
+/// A cube with a normal for each side and texture coordinates: 8 vertices, 24 wedges, 12 faces.
+fn cube() -> String {
+    let mut obj = String::new();
+    for corner in 0..8 {
+        obj += &format!("v {} {} {}\n", corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    }
+    obj += "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+    obj += "vn -1 0 0\nvn 1 0 0\nvn 0 -1 0\nvn 0 1 0\nvn 0 0 -1\nvn 0 0 1\n";
+    let sides = [[1, 5, 7, 3], [2, 4, 8, 6], [1, 2, 6, 5], [3, 7, 8, 4], [1, 3, 4, 2], [5, 6, 8, 7]];
+    for (side, [a, b, c, d]) in (1..).zip(sides) {
+        obj +=
+            &format!("f {a}/1/{side} {b}/2/{side} {c}/3/{side}\nf {a}/1/{side} {c}/3/{side} {d}/4/{side}\n");
+    }
+    obj
+}
+
+/// A bumpy sheet of n x n vertices.
+fn sheet(n: usize) -> String {
+    let mut obj = String::new();
+    for k in 0..n * n {
+        let (x, y) = (k % n, k / n);
+        obj += &format!("v {x} {y} {}\n", k * k % 17);
+    }
+    for k in 0..(n - 1) * (n - 1) {
+        let a = k / (n - 1) * n + k % (n - 1) + 1;
+        obj += &format!("f {a} {} {}\nf {a} {} {}\n", a + 1, a + n + 1, a + n + 1, a + n);
+    }
+    obj
+}
+
+fn json(bytes: &[u8]) -> Value {
+    serde_json::from_slice(bytes).unwrap_or_else(|error| panic!("{error}: {}", text(bytes)))
+}
+
+fn lines(place: &Workplace, file: &str, start: &str) -> usize {
+    text(&place.read(file)).lines().filter(|line| line.starts_with(start)).count()
+}
+
+#[test]
+fn the_parts_of_a_mesh_add_up_to_its_file() {
+    let place = Workplace::new();
+    place.write("cube.obj", cube().as_bytes());
+    place.write("sheet.obj", sheet(30).as_bytes());
+    for (mesh, vertices, wedges) in [("cube", 8, 24), ("sheet", 900, 900)] {
+        for storage in [&["--mode", "raw", "--positions", "f32"][..], &[]] {
+            let (input, out) = (format!("{mesh}.obj"), format!("{mesh}.pmesh"));
+            let arguments = [&["mesh", &input, "-o", &out, "--json"][..], storage].concat();
+            let report = json(&place.ok(&arguments));
+            let count = |key: &str| report[key].as_u64().unwrap_or_else(|| panic!("{key}: {report}"));
+            assert_eq!((count("vertices"), count("wedges")), (vertices, wedges), "{report}");
+            assert_eq!(count("levels"), vertices - count("base_vertices") + 1);
+            let bytes = place.read(&out).len() as u64;
+            let parts = report["parts"].as_object().expect("an object");
+            let sum: u64 = parts.values().map(|part| part.as_u64().expect("bytes")).sum();
+            assert_eq!((count("bytes"), sum), (bytes, bytes), "{report}");
+            let bits = report["bits_per_vertex"].as_f64().expect("a number");
+            assert!((bits - 8.0 * bytes as f64 / vertices as f64).abs() < 1e-9);
+            for stage in ["read", "clean", "order", "encode"] {
+                assert!(report["seconds"][stage].is_f64(), "{stage}: {report}");
+            }
+            place.ok(&["check", &out]);
+            // What is printed for people are the same figures.
+            let shown = text(&place.ok(&[&["mesh", &input, "-o", &out][..], storage].concat()));
+            assert!(shown.contains(&format!("{vertices} vertices, {wedges} wedges")), "{shown}");
+            for (part, bytes) in parts {
+                assert!(shown.contains(&format!("{bytes} B  {part}\n")), "{part}: {shown}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_was_welded_and_dropped_is_told() {
+    let place = Workplace::new();
+    // The first corner again under another number, a face without area, a vertex without a face.
+    let soup = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 1 0\nv 5 5 5\nf 1 2 3\nf 4 3 5\nf 2 2 3\n";
+    place.write("soup.obj", soup.as_bytes());
+    let report = json(&place.ok(&["mesh", "soup.obj", "-o", "soup.pmesh", "--json"]));
+    let found = |what: &str| report["findings"][what].as_u64();
+    assert_eq!(found("vertices welded (equal positions)"), Some(1), "{report}");
+    assert_eq!(found("degenerate faces dropped"), Some(1), "{report}");
+    assert_eq!(found("duplicate faces dropped"), None, "{report}");
+    let shown = text(&place.ok(&["mesh", "soup.obj", "-o", "soup.pmesh"]));
+    assert!(shown.contains("1    vertices welded (equal positions)\n"), "{shown}");
+}
+
+#[test]
+fn packets_have_the_wanted_number_of_vertices() {
+    let place = Workplace::new();
+    place.write("sheet.obj", sheet(30).as_bytes());
+    let packets = |options: &[&str]| {
+        let report =
+            json(&place.ok(&[&["mesh", "sheet.obj", "-o", "sheet.pmesh", "--json"], options].concat()));
+        report["packets"].as_u64().expect("a number")
+    };
+    assert_eq!(packets(&["--packet", "100"]), 9);
+    assert_eq!(packets(&["--packet", "899"]), 2);
+    assert!(packets(&["--growth", "100"]) < packets(&["--growth", "10"]));
+    assert_eq!(packets(&[]), packets(&["--growth", "30"]));
+    for (options, named) in [
+        (&["--packet", "9", "--growth", "9"][..], "--growth"),
+        (&["--packet", "0"], "must be at least 1"),
+        (&["--positions", "q9"], "q10"),
+        (&["--mode", "zip"], "raw"),
+        (&["--normal-bits", "17"], "4..=16"),
+    ] {
+        let output = place.run(&[&["mesh", "sheet.obj", "-o", "bad.pmesh"], options].concat());
+        assert_eq!(output.status.code(), Some(2), "{options:?}");
+        assert!(text(&output.stderr).contains(named), "{}", text(&output.stderr));
+        assert!(!place.path().join("bad.pmesh").exists());
+    }
+}
+
+#[test]
+fn seams_keep_their_attributes_when_extracted() {
+    let place = Workplace::new();
+    place.write("cube.obj", cube().as_bytes());
+    place.ok(&["mesh", "cube.obj", "-o", "cube.pmesh", "--mode", "raw", "--positions", "f32"]);
+    place.ok(&["extract", "cube.pmesh", "-o", "whole.obj"]);
+    let counts = ["v ", "vt ", "vn ", "f "].map(|start| lines(&place, "whole.obj", start));
+    assert_eq!(counts, [8, 24, 24, 12]);
+    let output = place.run(&["extract", "cube.pmesh", "-o", "whole.ply"]);
+    assert!(text(&output.stderr).contains("8 of the 8 vertices lie on seams"), "{}", text(&output.stderr));
+    assert!(text(&place.read("whole.ply")).contains("element vertex 24\n"));
+    // Both say the same mesh as the source.
+    for file in ["whole.obj", "whole.ply"] {
+        let report = json(&place.ok(&["mesh", file, "-o", "again.pmesh", "--json"]));
+        let count = |key: &str| report[key].as_u64();
+        assert_eq!(
+            (count("vertices"), count("wedges"), count("faces")),
+            (Some(8), Some(24), Some(12)),
+            "{file}"
+        );
+    }
+    // A coarser level has the wedges of its vertices.
+    place.ok(&["extract", "cube.pmesh", "-o", "coarse.obj", "--level", "6"]);
+    let [positions, normals] = ["v ", "vn "].map(|start| lines(&place, "coarse.obj", start));
+    assert!(positions == 6 && normals > 6, "{positions} positions, {normals} normals");
+}
+
+#[test]
+fn a_level_is_chosen_by_vertices_by_faces_or_by_error() {
+    let place = Workplace::new();
+    place.write("sheet.obj", sheet(30).as_bytes());
+    place.ok(&["mesh", "sheet.obj", "-o", "sheet.pmesh", "--packet", "50"]);
+    let extract = |options: &[&str]| {
+        let said = text(&place.ok(&[&["extract", "sheet.pmesh", "-o", "level.obj"], options].concat()));
+        let (_, error) = said.split_once("error at most ").expect("the error");
+        let error: f32 = error.split(' ').next().and_then(|e| e.parse().ok()).expect("a number");
+        (lines(&place, "level.obj", "v "), lines(&place, "level.obj", "f "), error)
+    };
+    assert_eq!(extract(&["--level", "500"]).0, 500);
+    let (vertices, faces, error) = extract(&["--faces", "600"]);
+    assert!(faces <= 600 && error > 0.0, "{faces} faces");
+    let next = (vertices + 1).to_string();
+    assert!(extract(&["--level", &next]).1 > 600, "a finer level has more faces than asked for");
+    let half = error / 2.0;
+    let (finer, _, stored) = extract(&["--error", &half.to_string()]);
+    assert!(finer > vertices && stored <= half, "{finer} vertices, error {stored}");
+    let coarser = (finer - 1).to_string();
+    assert!(extract(&["--level", &coarser]).2 > half, "a coarser level has a greater error than asked for");
+    assert_eq!(extract(&["--error", "1e-30"]).0, 900, "the finest level has no error");
+    for (options, status) in
+        [(&["--level", "5", "--faces", "5"][..], 2), (&["--error", "-1"], 2), (&["--level", "901"], 1)]
+    {
+        let output = place.run(&[&["extract", "sheet.pmesh", "-o", "bad.obj"], options].concat());
+        assert_eq!(output.status.code(), Some(status), "{options:?}");
+        assert!(!place.path().join("bad.obj").exists());
+    }
+}
+
+#[test]
+fn info_tells_how_a_mesh_is_stored() {
+    let place = Workplace::new();
+    place.write("sheet.obj", sheet(30).as_bytes());
+    let storage = ["--mode", "raw", "--positions", "f32", "--packet", "300"];
+    place.ok(&[&["mesh", "sheet.obj", "-o", "sheet.pmesh"][..], &storage].concat());
+    let report = json(&place.ok(&["info", "sheet.pmesh", "--json"]));
+    assert_eq!((&report["mode"], &report["positions"]), (&"raw".into(), &"f32".into()));
+    assert_eq!(report["position_error_m"].as_f64(), Some(0.0));
+    let parts = report["parts"].as_array().expect("a list");
+    let names: Vec<&str> = parts.iter().map(|part| part["part"].as_str().expect("a name")).collect();
+    let [header, names, first, second, third, end] = names[..] else { panic!("{names:?}") };
+    assert_eq!((header, names, end), ("header, directory", "chunk MTRL", "end"));
+    for (name, start) in [
+        (first, "packet 0: levels to 300, error "),
+        (second, "packet 1: levels to 600, error "),
+        (third, "packet 2: levels to 900, error "),
+    ] {
+        assert!(name.starts_with(start) && name.ends_with(" m"), "{name}");
+    }
+    let bytes: u64 = parts.iter().map(|part| part["bytes"].as_u64().expect("bytes")).sum();
+    assert_eq!(report["file_bytes"].as_u64(), Some(bytes));
+    let shown = text(&place.ok(&["info", "sheet.pmesh"]));
+    assert!(shown.contains(&format!("bits_per_vertex      {}", report["bits_per_vertex"])), "{shown}");
+}
