@@ -7,9 +7,12 @@ use ivg_wire::{
 };
 
 use crate::attributes::Attributes;
+use crate::coded::{Known, Saver, arranged};
+use crate::bits::Bits;
 use crate::header::{Header, PARAMETER_BITS, PacketEntry};
+use crate::lattice::{Lattice, bounds};
 use crate::material::write_names;
-use crate::packet::{Bits, code_bits, write_varint};
+use crate::packet::{code_bits, write_varint};
 use crate::progressive::ProgressiveMesh;
 use crate::slots::Slots;
 use crate::storage::{Mode, Positions};
@@ -67,10 +70,7 @@ impl EncodeOptions {
     /// Whether every option has a value that can be written.
     fn check(&self) -> Result<(), EncodeError> {
         let fail = |option| Err(EncodeError::Option { option });
-        if self.mode != Mode::Raw {
-            return fail("mode");
-        }
-        if !self.positions.exists() || self.positions != Positions::F32 {
+        if !self.positions.exists() {
             return fail("positions");
         }
         if !PARAMETER_BITS.contains(&self.normal_bits) {
@@ -80,6 +80,24 @@ impl EncodeOptions {
             return fail("uv_bits");
         }
         Ok(())
+    }
+
+    /// The mesh as a file with these options has it: the same levels after each packet, but in mode [`Mode::Coded`] with the
+    /// vertices inside each packet sorted by parent, and faces turned and sorted (PMESH-COD-01).
+    ///
+    /// # Panics
+    /// If the tables of the mesh are not valid; [`encode`] checks them first.
+    #[must_use]
+    pub fn arranged(&self, mesh: &ProgressiveMesh) -> ProgressiveMesh {
+        if self.mode == Mode::Raw {
+            return mesh.clone();
+        }
+        let vertices = mesh.positions.len() as u32;
+        let mut ends: Vec<u32> = Vec::new();
+        while ends.last().copied().unwrap_or(0) < vertices {
+            ends.push(self.packets.end(ends.last().copied().unwrap_or(0), mesh.base_vertices, vertices));
+        }
+        arranged(mesh, &ends)
     }
 
     /// Packets of that many vertices each.
@@ -118,7 +136,14 @@ impl PacketSize {
 pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>, EncodeError> {
     error::check(mesh)?;
     options.check()?;
-    let writer = Writer::new(mesh);
+    let arranged = (options.mode == Mode::Coded).then(|| options.arranged(mesh));
+    let mesh = arranged.as_ref().unwrap_or(mesh);
+    let writer = Writer::new(mesh, options);
+    if options.mode == Mode::Coded && writer.attributes != Attributes::default() {
+        return Err(EncodeError::Option { option: "mode" });
+    }
+    let cells = writer.cells();
+    let mut saver = (options.mode == Mode::Coded).then(|| writer.saver(&cells));
     let names = write_names(&mesh.material_names).ok_or(EncodeError::MaterialName)?;
 
     let mut packets: Vec<PacketEntry> = Vec::new();
@@ -126,7 +151,10 @@ pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>
     let vertices = mesh.positions.len() as u32;
     while packets.last().map_or(0, |p| p.vertices.end) < vertices {
         let entry = writer.entry(packets.last(), options.packets);
-        let payload = writer.payload(&entry);
+        let payload = match &mut saver {
+            Some(saver) => saver.packet(&entry),
+            None => writer.payload(&entry),
+        };
         let record = record_len(payload.len() as u64).filter(|&len| len <= u64::from(Maximum::RECORD_BYTES));
         record.ok_or(EncodeError::PacketSize { packet: packets.len() })?;
         packets.push(PacketEntry { payload_bytes: payload.len() as u32, ..entry });
@@ -169,6 +197,10 @@ pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>
 struct Writer<'a> {
     mesh: &'a ProgressiveMesh,
     attributes: Attributes,
+    mode: Mode,
+    positions: Positions,
+    /// The bounding box.
+    bounds: [[f32; 3]; 2],
     /// First wedge of each vertex, and the end.
     wedge_starts: Vec<u32>,
     /// Level of introduction, corners as mapped there, and index in the mesh of each stored face.
@@ -177,7 +209,7 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(mesh: &'a ProgressiveMesh) -> Self {
+    fn new(mesh: &'a ProgressiveMesh, options: &EncodeOptions) -> Self {
         let vertices = mesh.positions.len();
         let mut wedge_starts = alloc::vec![0; vertices + 1];
         for &v in &mesh.wedges.vertices {
@@ -195,7 +227,27 @@ impl<'a> Writer<'a> {
             seams: mesh.wedges.len() != vertices,
         };
         let switches = Switches::find(mesh, &faces, &wedge_starts);
-        Self { mesh, attributes, wedge_starts, faces, switches }
+        let bounds = bounds(&mesh.positions);
+        let EncodeOptions { mode, positions, .. } = *options;
+        Self { mesh, attributes, mode, positions, bounds, wedge_starts, faces, switches }
+    }
+
+    /// The lattice points of the vertices; none where positions are not quantised.
+    fn cells(&self) -> Vec<[i32; 3]> {
+        let Some(bits) = self.positions.bits() else { return Vec::new() };
+        let lattice = Lattice::new(self.bounds, bits);
+        self.mesh.positions.iter().map(|&p| lattice.nearest(p).map(|x| x as i32)).collect()
+    }
+
+    /// The writer of coded packets.
+    fn saver<'b>(&'b self, cells: &'b [[i32; 3]]) -> Saver<'b> {
+        let known = Known {
+            mesh: self.mesh,
+            faces: &self.faces,
+            switches: (&self.switches.codes, &self.switches.ranges),
+            cells,
+        };
+        Saver::new(known, Lattice::new(self.bounds, self.positions.bits().unwrap_or(0)).top())
     }
 
     /// The packet that follows `before`; its payload's length is not known yet.
@@ -224,7 +276,12 @@ impl<'a> Writer<'a> {
         let base = mesh.base_vertices as usize;
         let splits = vertices.start.max(base) - base..vertices.end - base;
         let mut out = Vec::new();
-        floats(&mut out, &mesh.positions[vertices.clone()]);
+        match self.positions.bits() {
+            None => floats(&mut out, &mesh.positions[vertices.clone()]),
+            Some(bits) => {
+                points(&mut out, &mesh.positions[vertices.clone()], &Lattice::new(self.bounds, bits));
+            }
+        }
         if self.attributes.normals {
             floats(&mut out, &mesh.wedges.normals[wedges.clone()]);
         }
@@ -257,23 +314,16 @@ impl<'a> Writer<'a> {
         for v in splits {
             let wedges = self.wedge_starts[base + v + 1] - self.wedge_starts[base + v];
             for &code in self.switches.of(v) {
-                bits.push(code, code_bits(wedges));
+                bits.push(code.into(), code_bits(wedges));
             }
         }
-        out.extend_from_slice(bits.bytes());
+        out.extend_from_slice(&bits.to_bytes());
         out
     }
 
     /// The header, as far as it is known before the file is laid out.
     fn header(&self, packets: Vec<PacketEntry>) -> Header {
         let mesh = self.mesh;
-        let mut bounds = mesh.positions.first().map_or([[0.0; 3]; 2], |&p| [p, p]);
-        for p in &mesh.positions {
-            for k in 0..3 {
-                bounds[0][k] = bounds[0][k].min(p[k]);
-                bounds[1][k] = bounds[1][k].max(p[k]);
-            }
-        }
         Header {
             minor: FORMAT.minor,
             optional_features: 0,
@@ -285,11 +335,11 @@ impl<'a> Writer<'a> {
             wedge_count: mesh.wedges.len() as u32,
             face_count: self.faces.len() as u32,
             base_vertices: mesh.base_vertices,
-            mode: Mode::Raw,
-            positions: Positions::F32,
+            mode: self.mode,
+            positions: self.positions,
             attributes: self.attributes,
             origin: mesh.origin,
-            bounds,
+            bounds: self.bounds,
             normal_bits: 0,
             uv_bits: 0,
             uv_bounds: [[0.0; 2]; 2],
@@ -313,7 +363,7 @@ impl Switches {
         let mut corners: Vec<[u32; 3]> = faces.iter().map(|&(_, _, i)| mesh.faces[i]).collect();
         let vertex_of = |w: u32| mesh.wedges.vertices[w as usize];
         let mut slots = Slots::default();
-        slots.resize(mesh.positions.len(), faces.len());
+        slots.resize(mesh.positions.len(), mesh.positions.len());
         for (face, corners) in (0u32..).zip(&corners) {
             for (corner, &wedge) in (0u32..).zip(corners) {
                 slots.push(vertex_of(wedge), 3 * face + corner);
@@ -341,6 +391,8 @@ impl Switches {
                     codes.push(0);
                 }
             });
+            // Canonical order is descending.
+            codes[start..].reverse();
             ranges[split] = (start, codes.len());
         }
         Self { codes, ranges }
@@ -356,6 +408,15 @@ fn floats<const N: usize>(out: &mut Vec<u8>, array: &[[f32; N]]) {
     out.reserve(4 * N * array.len());
     for x in array.as_flattened() {
         out.extend_from_slice(&x.to_le_bytes());
+    }
+}
+
+/// The nearest points of the lattice, four u16 each, the last 0 (PMESH-POS-03).
+fn points(out: &mut Vec<u8>, positions: &[[f32; 3]], lattice: &Lattice) {
+    for &position in positions {
+        // A lattice has at most 16 bits.
+        let [x, y, z] = lattice.nearest(position).map(|q| q as u16);
+        out.extend([x, y, z, 0].into_iter().flat_map(u16::to_le_bytes));
     }
 }
 

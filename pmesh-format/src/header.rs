@@ -12,6 +12,7 @@ use zerocopy::{FromBytes, IntoBytes};
 
 use crate::attributes::Attributes;
 use crate::code::codes;
+use crate::coded::least_bytes;
 use crate::limits::{Limits, MAX_COUNT};
 use crate::storage::{Mode, Positions};
 use crate::wire::{
@@ -152,13 +153,17 @@ impl Header {
         header.check_counts(packets)?;
         match Mode::from_id(wire.mode) {
             Some(Mode::Raw) => {}
+            Some(Mode::Coded) if header.attributes == Attributes::default() => {}
             _ if wire.mode == 0 => return Err(fail(codes::MODE_FORBIDDEN, at::MODE)),
             _ => return Err(fail(codes::MODE_UNKNOWN, at::MODE)),
         }
         match Positions::from_id(wire.positions) {
-            Some(Positions::F32) => {}
-            _ if wire.positions == 0 => return Err(fail(codes::POSITIONS_FORBIDDEN, at::POSITIONS)),
-            _ => return Err(fail(codes::POSITIONS_UNKNOWN, at::POSITIONS)),
+            Some(Positions::F32) if header.mode == Mode::Coded => {
+                return Err(fail(codes::POSITIONS_UNKNOWN, at::POSITIONS));
+            }
+            Some(_) => {}
+            None if wire.positions == 0 => return Err(fail(codes::POSITIONS_FORBIDDEN, at::POSITIONS)),
+            None => return Err(fail(codes::POSITIONS_UNKNOWN, at::POSITIONS)),
         }
         if !header.origin.iter().all(|x| x.is_finite()) {
             return Err(fail(codes::MESH_ORIGIN, at::ORIGIN));
@@ -298,7 +303,13 @@ impl Header {
         if entry.faces.end < start.2 || entry.faces.end > self.face_count {
             return Err((codes::DIRECTORY_COUNTS, at::END_FACE));
         }
-        let arrays = self.layout(&entry).map_or(u64::MAX, |layout| layout.rest as u64);
+        let arrays = match self.mode {
+            Mode::Raw => self.layout(&entry).map_or(u64::MAX, |layout| layout.rest as u64),
+            Mode::Coded => {
+                let counts = self.counts(&entry);
+                least_bytes(start.0, counts.vertices, counts.faces)
+            }
+        };
         let record = record_len(u64::from(entry.payload_bytes)).unwrap_or(u64::MAX);
         if arrays > u64::from(entry.payload_bytes) || record > u64::from(Maximum::RECORD_BYTES) {
             return Err((codes::DIRECTORY_BYTES, at::PAYLOAD_BYTES));
@@ -316,7 +327,7 @@ impl Header {
 
     /// Where the arrays of a packet lie in its payload.
     pub(crate) fn layout(&self, entry: &PacketEntry) -> Option<PacketLayout> {
-        PacketLayout::new(self.counts(entry), self.attributes)
+        PacketLayout::new(self.counts(entry), self.attributes, self.positions)
     }
 
     /// How many of each thing a packet holds.

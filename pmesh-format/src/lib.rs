@@ -51,16 +51,20 @@ extern crate alloc;
 extern crate std;
 
 mod attributes;
+mod bits;
 mod code;
+mod coded;
 mod decode;
 mod encode;
 mod header;
+mod lattice;
 mod limits;
 mod material;
 mod mesh;
 mod packet;
 mod progressive;
 mod replay;
+mod room;
 mod slots;
 mod storage;
 #[cfg(test)]

@@ -7,6 +7,7 @@ use ivg_wire::{ByteOffset, Code, Error, Part};
 
 use crate::code::codes;
 use crate::header::{Header, PacketEntry};
+use crate::storage::Mode;
 use crate::wire::PacketLayout;
 
 /// A packet whose checksum fits. Its arrays lie in the caller's bytes, little-endian, ready to be copied into the buffers of
@@ -55,7 +56,8 @@ impl<'a> Packet<'a> {
         self.payload
     }
 
-    /// Positions of its vertices relative to the origin, three binary32 numbers each \[m\].
+    /// Positions of its vertices: three binary32 numbers each, relative to the origin \[m\]; quantised, four u16 each, the
+    /// last 0 (PMESH-POS-03).
     #[must_use]
     pub fn position_bytes(&self) -> &'a [u8] {
         self.part(|layout| layout.positions)
@@ -97,9 +99,9 @@ impl<'a> Packet<'a> {
         self.part(|layout| layout.materials)
     }
 
-    /// Where the arrays lie in the payload; the directory was checked for that.
-    pub(crate) fn layout(&self) -> Option<PacketLayout> {
-        self.header.layout(self.entry)
+    /// Where the arrays of a raw packet lie in the payload; the directory was checked for that.
+    fn layout(&self) -> Option<PacketLayout> {
+        (self.header.mode == Mode::Raw).then(|| self.header.layout(self.entry)).flatten()
     }
 
     fn part(&self, which: impl FnOnce(PacketLayout) -> Range<usize>) -> &'a [u8] {
@@ -156,72 +158,6 @@ pub(crate) fn write_varint(out: &mut alloc::vec::Vec<u8>, mut value: u32) {
         value >>= 7;
     }
     out.push(value as u8);
-}
-
-/// A sequence of bits, the first in bit 0 of byte 0.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Bits {
-    bytes: alloc::vec::Vec<u8>,
-    len: u64,
-}
-
-impl Bits {
-    /// How many bits there are.
-    pub(crate) fn len(&self) -> u64 {
-        self.len
-    }
-
-    /// Appends the lowest `count` bits of `value`.
-    pub(crate) fn push(&mut self, value: u32, count: u32) {
-        for bit in 0..count {
-            let (byte, place) = split(self.len);
-            if place == 0 {
-                self.bytes.push(0);
-            }
-            if let Some(byte) = self.bytes.get_mut(byte) {
-                *byte |= ((value >> bit & 1) as u8) << place;
-            }
-            self.len = self.len.saturating_add(1);
-        }
-    }
-
-    /// Drops all bits from `len` on.
-    pub(crate) fn truncate(&mut self, len: u64) {
-        self.len = len.min(self.len);
-        let (bytes, place) = split(self.len);
-        self.bytes.truncate(bytes.saturating_add(usize::from(place > 0)));
-        if let (Some(last), true) = (self.bytes.last_mut(), place > 0) {
-            *last &= (1u8 << place).wrapping_sub(1);
-        }
-    }
-
-    /// The `count` bits from `at` on; `None` if they are not all there.
-    pub(crate) fn get(&self, at: u64, count: u32) -> Option<u32> {
-        if at.checked_add(u64::from(count))? > self.len {
-            return None;
-        }
-        read_bits(&self.bytes, at, count)
-    }
-
-    /// The bytes; unused bits of the last are zero.
-    pub(crate) fn bytes(&self) -> &[u8] {
-        &self.bytes
-    }
-}
-
-/// The `count` bits of `bytes` from bit `at` on; `None` if they are not all there.
-pub(crate) fn read_bits(bytes: &[u8], at: u64, count: u32) -> Option<u32> {
-    let mut value = 0;
-    for bit in 0..count {
-        let (byte, place) = split(at.checked_add(u64::from(bit))?);
-        value |= u32::from(bytes.get(byte)? >> place & 1) << bit;
-    }
-    Some(value)
-}
-
-/// The byte in which a bit lies, and its place there.
-fn split(bit: u64) -> (usize, u32) {
-    (usize::try_from(bit >> 3).unwrap_or(usize::MAX), (bit & 7) as u32)
 }
 
 /// Bits of a switch code for a vertex with that many wedges: enough for 0 to `wedges` (PMESH-SWI-02).

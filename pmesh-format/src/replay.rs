@@ -3,6 +3,7 @@
 //! The file holds what changes on the way up. [`Replay`] walks that way and back: adding vertex *v* lets some corner slots of
 //! its parent switch to *v* and appends the faces that *v* introduces; taking it away undoes both. Nothing else is touched.
 
+use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::ops::{Range, RangeInclusive};
@@ -10,18 +11,24 @@ use core::ops::{Range, RangeInclusive};
 use ivg_wire::Error;
 
 use crate::attributes::Attributes;
+use crate::bits::Bits;
 use crate::code::codes;
+use crate::coded::State;
 use crate::decode::Event;
 use crate::header::Header;
 use crate::material::material_names;
 use crate::mesh::{IndexedMesh, Wedges};
-use crate::packet::{Bits, Packet, code_bits};
+use crate::packet::Packet;
 use crate::slots::Slots;
 use crate::wire::MATERIALS;
 
 mod grow;
 mod levels;
 mod load;
+mod touched;
+mod walk;
+
+use touched::Touched;
 
 /// A mesh that can be shown at any number of vertices that has arrived.
 ///
@@ -55,12 +62,14 @@ pub struct Replay {
     /// What each wedge from those of the base on becomes.
     wedge_targets: Vec<u32>,
     slots: Slots,
+    /// What has been learnt from coded packets.
+    coded: Option<Box<State>>,
     /// Switch codes of all vertices from the base on.
     switches: Bits,
     /// Where the switch codes of the next vertex begin.
     switch_at: u64,
     /// Faces of which a corner has switched since the last report.
-    touched: Vec<u32>,
+    touched: Touched,
 }
 
 /// What is different after a change of level.
@@ -331,106 +340,10 @@ impl Replay {
         }
     }
 
-    /// Adds and takes away vertices until `level` are there; all of it has arrived. To level 0 only before the first packet.
-    fn walk(&mut self, level: u32) {
-        while self.level < level {
-            self.raise();
-        }
-        while self.level > level.max(self.base()) {
-            self.lower();
-        }
-        self.level = level;
-    }
-
-    /// Adds the next vertex, whose switch codes are known.
-    fn raise(&mut self) {
-        let vertex = self.level;
-        let parent = self.parents[(vertex - self.base()) as usize];
-        let wedges = self.wedges_of(vertex);
-        let bits = code_bits(wedges.len() as u32);
-        let Self { slots, corners, switches, switch_at, touched, .. } = self;
-        // Codes that were checked when the packet came cannot fail.
-        let _: Result<(), core::convert::Infallible> = slots.split(parent, vertex, |slot| {
-            let code = switches.get(*switch_at, bits).unwrap_or(0);
-            *switch_at += u64::from(bits);
-            if code > 0 {
-                corners[(slot / 3) as usize][(slot % 3) as usize] = wedges.start + code - 1;
-                touched.push(slot / 3);
-            }
-            Ok(code > 0)
-        });
-        self.introduce_faces();
-    }
-
-    /// Counts the next vertex, whose slots are in its list, as there, and adds the faces that it introduces.
-    fn introduce_faces(&mut self) {
-        let vertex = self.level;
-        self.level += 1;
-        for face in self.faces_at(vertex)..self.faces_at(vertex + 1) {
-            self.enter(face);
-        }
-        self.compact_touched();
-    }
-
-    /// Takes the last vertex away.
-    fn lower(&mut self) {
-        let vertex = self.level - 1;
-        for face in (self.faces_at(vertex)..self.faces_at(vertex + 1)).rev() {
-            for corner in self.corners[face as usize] {
-                let at = self.vertex_of(corner);
-                self.slots.pop(at);
-            }
-        }
-        let parent = self.parents[(vertex - self.base()) as usize];
-        let bits = code_bits(self.wedges_of(vertex).len() as u32);
-        let mut slots = core::mem::take(&mut self.slots);
-        let mut count = 0u64;
-        slots.merge(vertex, parent, |slot, was_child| {
-            count += 1;
-            if was_child {
-                let (face, corner) = ((slot / 3) as usize, (slot % 3) as usize);
-                self.corners[face][corner] = self.target(self.corners[face][corner]);
-                self.touched.push(slot / 3);
-            }
-        });
-        self.slots = slots;
-        self.switch_at -= count * u64::from(bits);
-        self.level = vertex;
-        self.compact_touched();
-    }
-
-    /// Puts the slots of a new face into the lists of its vertices.
-    fn enter(&mut self, face: u32) {
-        for (corner, wedge) in (0..).zip(self.corners[face as usize]) {
-            let vertex = self.vertex_of(wedge);
-            self.slots.push(vertex, 3 * face + corner);
-        }
-    }
-
-    /// Keeps the list of touched faces from growing beyond twice the number of faces.
-    fn compact_touched(&mut self) {
-        if self.touched.len() > 2 * self.corners.len() + 64 {
-            self.touched.sort_unstable();
-            self.touched.dedup();
-        }
-    }
-
     /// What has changed since the level was `from`, with that many faces.
     fn report(&mut self, from: u32, faces_before: u32) -> LevelChange {
         let faces = self.face_count();
-        self.touched.sort_unstable();
-        self.touched.dedup();
-        let mut changed: Vec<Range<u32>> = Vec::new();
-        let mut add = |range: Range<u32>| match changed.last_mut() {
-            _ if range.is_empty() => {}
-            Some(last) if last.end == range.start => last.end = range.end,
-            _ => changed.push(range),
-        };
-        for &face in self.touched.iter().filter(|&&face| face < faces.min(faces_before)) {
-            add(face..face + 1);
-        }
-        add(faces_before..faces.max(faces_before));
-        self.touched.clear();
+        let changed = self.touched.report(faces_before.min(faces), faces);
         LevelChange { from, to: self.level, changed }
     }
 }

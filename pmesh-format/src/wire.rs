@@ -10,6 +10,7 @@ use zerocopy::little_endian::{F32, F64, U16, U32};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
 use crate::attributes::Attributes;
+use crate::storage::Positions;
 
 /// The major version that this crate reads and writes; 0 is a draft (COM-VER-01).
 pub const MAJOR: u16 = 0;
@@ -140,8 +141,10 @@ pub(crate) struct PacketLayout {
     pub(crate) rest: usize,
 }
 
-/// Bytes of an element of each array: three or two binary32 numbers, four bytes, three or one u32, one u16.
+/// Bytes of an element of each array: three binary32 numbers or four u16, two binary32 numbers, four bytes, three or one u32,
+/// one u16.
 pub(crate) const VECTOR_BYTES: usize = 12;
+pub(crate) const QUANTISED_BYTES: usize = 8;
 pub(crate) const UV_BYTES: usize = 8;
 pub(crate) const COLOUR_BYTES: usize = 4;
 pub(crate) const CORNERS_BYTES: usize = 12;
@@ -150,7 +153,7 @@ pub(crate) const MATERIAL_BYTES: usize = 2;
 
 impl PacketLayout {
     /// The layout; `None` if it does not fit in the address space.
-    pub(crate) fn new(counts: PacketCounts, attributes: Attributes) -> Option<Self> {
+    pub(crate) fn new(counts: PacketCounts, attributes: Attributes, positions: Positions) -> Option<Self> {
         let mut end = 0usize;
         let mut array = |present: bool, count: u32, bytes: usize| {
             let start = end;
@@ -159,9 +162,10 @@ impl PacketLayout {
             }
             Some(start..end)
         };
+        let position_bytes = if positions == Positions::F32 { VECTOR_BYTES } else { QUANTISED_BYTES };
         let PacketCounts { vertices, wedges, faces, splits } = counts;
         Some(Self {
-            positions: array(true, vertices, VECTOR_BYTES)?,
+            positions: array(true, vertices, position_bytes)?,
             normals: array(attributes.normals, wedges, VECTOR_BYTES)?,
             uvs: array(attributes.uvs, wedges, UV_BYTES)?,
             colours: array(attributes.colours, wedges, COLOUR_BYTES)?,

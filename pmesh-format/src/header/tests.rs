@@ -58,7 +58,7 @@ fn every_defect_of_header_and_directory_has_its_code_and_its_place() {
         ("MODE_FORBIDDEN", 76, |p| p.specific[20] = 0),
         ("MODE_UNKNOWN", 76, |p| p.specific[20] = 2),
         ("POSITIONS_FORBIDDEN", 77, |p| p.specific[21] = 0),
-        ("POSITIONS_UNKNOWN", 77, |p| p.specific[21] = 4),
+        ("POSITIONS_UNKNOWN", 77, |p| p.specific[21] = 9),
         ("RESERVED", 78, |p| p.specific[22] |= 32),
         ("RESERVED", 78, |p| p.specific[23] |= 1),
         ("MESH_ORIGIN", 80, |p| p.specific[24..32].copy_from_slice(&f64::NAN.to_le_bytes())),

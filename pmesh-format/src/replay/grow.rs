@@ -9,35 +9,45 @@ use alloc::vec::Vec;
 
 use super::Replay;
 use crate::packet::code_bits;
+use crate::slots::Slots;
 
 impl Replay {
-    /// The slots (3 × face + corner) whose corners lie on `vertex`, in canonical order: ascending.
+    /// The slots (3 × face + corner) whose corners lie on `vertex`, ascending.
+    pub(crate) fn slots_of(&self, vertex: u32) -> &[u32] {
+        self.slots.of(vertex)
+    }
+
+    /// The slots of `vertex`, ascending, copied.
     pub(crate) fn gather(&self, vertex: u32, out: &mut Vec<u32>) {
         out.clear();
-        self.slots.visit(vertex, |slot| out.push(slot));
-        out.reverse();
+        out.extend_from_slice(self.slots.of(vertex));
     }
 
     /// Adds `vertex`, the one after the highest level, whose parent is `parent`. `codes` has one entry for each slot of the
-    /// parent in canonical order: 0 if it stays, k if its corner switches to the k-th wedge of `vertex`. Faces that `vertex`
+    /// parent, ascending: 0 if it stays, k if its corner switches to the k-th wedge of `vertex`. Faces that `vertex`
     /// introduces follow.
     ///
     /// The caller has checked that each wedge collapses back onto the one that the corner has.
     pub(crate) fn split(&mut self, vertex: u32, parent: u32, codes: &[u32]) {
         let wedges = self.wedges_of(vertex);
         let bits = code_bits(wedges.len() as u32);
-        let Self { slots, corners, switches, touched, .. } = self;
-        let mut codes = codes.iter().rev();
-        let _: Result<(), core::convert::Infallible> = slots.split(parent, vertex, |slot| {
-            let code = codes.next().copied().unwrap_or(0);
-            if code > 0 {
-                corners[(slot / 3) as usize][(slot % 3) as usize] = wedges.start + code - 1;
-                touched.push(slot / 3);
-            }
-            switches.push(code, bits);
-            Ok(code > 0)
-        });
+        // Kept in the order of raw packets: descending (PMESH-SWI-01).
+        for &code in codes.iter().rev() {
+            self.switches.push(code.into(), bits);
+        }
         self.switch_at = self.switches.len();
+        self.slots.resize(self.positions.len(), self.header.vertex_count as usize);
+        let corners = self.corners.as_flattened_mut();
+        for (&slot, &code) in self.slots.of(parent).iter().zip(codes).filter(|(_, code)| **code > 0) {
+            corners[slot as usize] = wedges.start + code - 1;
+            self.touched.mark(slot / 3);
+        }
+        if codes.len() <= Slots::SHORT {
+            let chosen = codes.iter().rev().fold(0, |chosen, &code| chosen << 1 | u32::from(code > 0));
+            self.slots.split_short(parent, vertex, chosen);
+        } else {
+            self.slots.split(parent, vertex, |k| codes[k] > 0);
+        }
         self.face_ends.push(self.corners.len() as u32);
         self.level = vertex + 1;
     }
@@ -49,8 +59,12 @@ impl Replay {
         if self.attributes().materials {
             self.materials.push(material);
         }
-        self.slots.resize(self.positions.len(), self.corners.len());
+        self.slots.resize(self.positions.len(), self.header.vertex_count as usize);
+        self.touched.resize(self.corners.len(), self.header.face_count as usize);
         *self.face_ends.last_mut().unwrap_or(&mut self.base_faces) = face + 1;
-        self.enter(face);
+        for (corner, wedge) in (0..).zip(corners) {
+            let vertex = self.vertex_of(wedge);
+            self.slots.push(vertex, 3 * face + corner);
+        }
     }
 }

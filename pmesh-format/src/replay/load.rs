@@ -1,16 +1,21 @@
 //! Taking a packet in: every rule is checked, and nothing is kept of a packet that breaks one.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::ops::Range;
 
 use ivg_wire::{Code, Error};
+use zerocopy::FromBytes;
+use zerocopy::little_endian::{U16, U32};
 
 use super::Replay;
 use crate::code::codes;
-use crate::packet::{Packet, Varints, code_bits, read_bits};
-use crate::wire::{
-    COLOUR_BYTES, CORNERS_BYTES, MATERIAL_BYTES, PARENT_BYTES, PacketLayout, UV_BYTES, VECTOR_BYTES,
-};
+use crate::coded::State;
+use crate::lattice::Lattice;
+use crate::packet::{Packet, Varints};
+use crate::room::reserve;
+use crate::storage::Mode;
+use crate::wire::{CORNERS_BYTES, PARENT_BYTES, PacketLayout, QUANTISED_BYTES, UV_BYTES, VECTOR_BYTES};
 
 /// What is wrong, and at which byte of the payload.
 type Fault = (Code, usize);
@@ -28,9 +33,20 @@ impl Replay {
     }
 
     fn try_load(&mut self, packet: &Packet<'_>) -> Result<(), Fault> {
-        let payload = packet.payload();
+        if self.header.mode == Mode::Raw {
+            return self.load_payload(packet, packet.payload());
+        }
+        let base = self.base();
+        let mut coded = self.coded.take().unwrap_or_else(|| Box::new(State::new(base)));
+        let read = coded.read(&self.header, packet.entry(), packet.payload());
+        self.coded = Some(coded);
+        self.load_payload(packet, &read?)
+    }
+
+    /// Takes in what a packet says, in the form of a raw one.
+    fn load_payload(&mut self, packet: &Packet<'_>, payload: &[u8]) -> Result<(), Fault> {
         // The directory was checked for a payload at least as long as its arrays.
-        let layout = packet.layout().filter(|layout| layout.rest <= payload.len());
+        let layout = self.header.layout(packet.entry()).filter(|layout| layout.rest <= payload.len());
         let layout = layout.ok_or((codes::SWITCH_LENGTH, 0))?;
         self.load_arrays(payload, &layout)?;
         let entry = packet.entry();
@@ -38,31 +54,63 @@ impl Replay {
         if self.attributes().seams {
             self.load_wedges(&mut numbers, entry.vertices.clone(), entry.wedges.clone())?;
         }
-        let face_ends = self.check_faces(&layout, entry.vertices.clone(), entry.faces.clone())?;
-        self.slots.resize(self.positions.len(), self.corners.len());
-        self.climb(payload, numbers.at, entry.vertices.clone(), entry.faces.start, &face_ends)
+        self.load_faces(&layout, entry.vertices.clone(), entry.faces.clone())?;
+        self.slots.resize(self.positions.len(), self.header.vertex_count as usize);
+        self.touched.resize(self.corners.len(), self.header.face_count as usize);
+        self.load_codes(payload, numbers.at, entry.vertices.end)
     }
 
     /// Appends positions, attributes, corners, parents and materials.
     fn load_arrays(&mut self, payload: &[u8], layout: &PacketLayout) -> Result<(), Fault> {
-        let [low, high] = self.header.bounds;
-        let inside = |p: &[f32; 3]| (0..3).all(|k| low[k] <= p[k] && p[k] <= high[k]);
-        let finite = |v: &[f32]| v.iter().all(|x| x.is_finite());
-        append(&mut self.positions, payload, &layout.positions, VECTOR_BYTES, floats, |p| {
-            if inside(p) { Ok(()) } else { Err(codes::POSITION) }
-        })?;
-        let attribute = |v: &[f32]| if finite(v) { Ok(()) } else { Err(codes::ATTRIBUTE) };
-        append(&mut self.normals, payload, &layout.normals, VECTOR_BYTES, floats, |n| attribute(n))?;
-        append(&mut self.uvs, payload, &layout.uvs, UV_BYTES, floats, |t| attribute(t))?;
-        append(&mut self.colours, payload, &layout.colours, COLOUR_BYTES, bytes, |_| Ok(()))?;
-        append(&mut self.corners, payload, &layout.corners, CORNERS_BYTES, indices, |_| Ok(()))?;
-        let mut vertex = self.base() + self.parents.len() as u32;
-        append(&mut self.parents, payload, &layout.parents, PARENT_BYTES, number, |&parent| {
-            vertex += 1;
-            if parent < vertex - 1 { Ok(()) } else { Err(codes::PARENT) }
-        })?;
-        let material = |b: &[u8]| u16::from_le_bytes(bytes(b));
-        append(&mut self.materials, payload, &layout.materials, MATERIAL_BYTES, material, |_| Ok(()))
+        let part = |range: &Range<usize>| payload.get(range.clone()).unwrap_or(&[]);
+        let vertices = self.positions.len();
+        let total = self.header.vertex_count as usize;
+        match self.header.positions.bits() {
+            None => {
+                append(&mut self.positions, elements(part(&layout.positions)), total, floats);
+                let [low, high] = self.header.bounds;
+                let inside = |p: &[f32; 3]| (0..3).all(|k| (low[k] <= p[k]) & (p[k] <= high[k]));
+                check(&self.positions[vertices..], inside)
+                    .map_err(|k| (codes::POSITION, layout.positions.start + k * VECTOR_BYTES))?;
+            }
+            Some(bits) => {
+                let lattice = Lattice::new(self.header.bounds, bits);
+                let points: &[[U16; 4]] = elements(part(&layout.positions));
+                let top = lattice.top();
+                let inside =
+                    |p: &[U16; 4]| (0..3).all(|k| u32::from(p[k].get()) <= top[k]) & (p[3].get() == 0);
+                check(points, inside)
+                    .map_err(|k| (codes::POSITION, layout.positions.start + k * QUANTISED_BYTES))?;
+                let position = |[x, y, z, _]: [U16; 4]| lattice.position([x, y, z].map(|q| q.get().into()));
+                append(&mut self.positions, points, total, position);
+                check(&self.positions[vertices..], |p| p.iter().all(|x| x.is_finite()))
+                    .map_err(|k| (codes::POSITION, layout.positions.start + k * QUANTISED_BYTES))?;
+            }
+        }
+        let wedges = self.header.wedge_count as usize;
+        let (normals, uvs) = (self.normals.len(), self.uvs.len());
+        append(&mut self.normals, elements(part(&layout.normals)), wedges, floats);
+        check(&self.normals[normals..], |n| n.iter().all(|x| x.is_finite()))
+            .map_err(|k| (codes::ATTRIBUTE, layout.normals.start + k * VECTOR_BYTES))?;
+        append(&mut self.uvs, elements(part(&layout.uvs)), wedges, floats);
+        check(&self.uvs[uvs..], |t| t.iter().all(|x| x.is_finite()))
+            .map_err(|k| (codes::ATTRIBUTE, layout.uvs.start + k * UV_BYTES))?;
+        append(&mut self.colours, elements(part(&layout.colours)), wedges, |colour: [u8; 4]| colour);
+        let faces = self.header.face_count as usize;
+        append(&mut self.corners, elements(part(&layout.corners)), faces, |face: [U32; 3]| {
+            face.map(U32::get)
+        });
+        let splits = self.parents.len();
+        let base = self.base();
+        let first = base + splits as u32;
+        append(&mut self.parents, elements(part(&layout.parents)), total - base as usize, U32::get);
+        let earlier = (first..).zip(&self.parents[splits..]);
+        if !earlier.clone().fold(true, |good, (vertex, &parent)| good & (parent < vertex)) {
+            let k = earlier.take_while(|&(vertex, &parent)| parent < vertex).count();
+            return Err((codes::PARENT, layout.parents.start + k * PARENT_BYTES));
+        }
+        append(&mut self.materials, elements(part(&layout.materials)), faces, U16::get);
+        Ok(())
     }
 
     /// Reads how many wedges each vertex has, then what the wedges become.
@@ -72,6 +120,9 @@ impl Replay {
         vertices: Range<u32>,
         wedges: Range<u32>,
     ) -> Result<(), Fault> {
+        let total = self.header.wedge_count as usize;
+        reserve(&mut self.wedge_ends, vertices.len(), self.header.vertex_count as usize);
+        reserve(&mut self.wedge_vertices, wedges.len(), total);
         let mut end = wedges.start;
         for vertex in vertices.clone() {
             let at = numbers.at;
@@ -86,6 +137,7 @@ impl Replay {
         if end != wedges.end {
             return Err((codes::WEDGE_COUNT, numbers.at));
         }
+        reserve(&mut self.wedge_targets, wedges.len(), total);
         for vertex in vertices.start.max(self.base())..vertices.end {
             let parents = self.wedges_of(self.parents[(vertex - self.base()) as usize]);
             for _ in self.wedges_of(vertex) {
@@ -100,109 +152,117 @@ impl Replay {
         Ok(())
     }
 
-    /// Checks the faces of the packet; for each vertex of it, says how many faces there are with it.
-    fn check_faces(
-        &self,
+    /// Checks the faces of the packet and notes how many faces there are with each vertex.
+    fn load_faces(
+        &mut self,
         layout: &PacketLayout,
         vertices: Range<u32>,
         faces: Range<u32>,
-    ) -> Result<Vec<u32>, Fault> {
+    ) -> Result<(), Fault> {
         let wedges = self.wedges_of(vertices.end - 1).end;
         // Faces of the base count as introduced by its last vertex.
         let first = vertices.start.max(self.base() - 1);
+        let mut ends = alloc::vec![0; (vertices.end - first) as usize];
+        let new = &self.corners[faces.start as usize..];
+        let named = new.as_flattened().iter().fold(0, |most, &w| most.max(w)) < wedges || new.is_empty();
+        let good = named
+            && if self.attributes().seams {
+                self.note_faces(faces.start, first, &mut ends, |w| self.wedge_vertices[w as usize])
+            } else {
+                self.note_faces(faces.start, first, &mut ends, |w| w)
+            };
+        if !good {
+            return Err(self.fault_of_faces(layout, wedges, first, faces));
+        }
+        let mut end = faces.start;
+        for entry in &mut ends {
+            end = end.max(*entry);
+            *entry = end;
+        }
+        let mut ends = &ends[..];
+        if let (true, Some((&base, rest))) = (vertices.start < self.base(), ends.split_first()) {
+            self.base_faces = base;
+            ends = rest;
+        }
+        let splits = self.header.vertex_count - self.base();
+        reserve(&mut self.face_ends, ends.len(), splits as usize);
+        self.face_ends.extend_from_slice(ends);
+        Ok(())
+    }
+
+    /// Writes the end of the faces of each vertex from `first` on that has any into `ends`; whether all faces from `face` on
+    /// are as they should be. Their corners name wedges that are there.
+    fn note_faces(&self, face: u32, first: u32, ends: &mut [u32], vertex_of: impl Fn(u32) -> u32) -> bool {
+        let base = self.base();
+        let mut good = true;
         let mut introduced = first;
-        let mut ends = Vec::with_capacity((vertices.end - first) as usize);
+        for (corners, end) in self.corners[face as usize..].iter().zip(face + 1..) {
+            let [a, b, c] = corners.map(&vertex_of);
+            let last = a.max(b).max(c).max(base - 1);
+            good &= (a != b) & (b != c) & (c != a) & (last >= introduced);
+            introduced = introduced.max(last);
+            ends[(introduced - first) as usize] = end;
+            // The base's faces have no vertex that collapses: they are compared with a corner of their own.
+            let parent = last.checked_sub(base).map_or(a, |split| self.parents[split as usize]);
+            good &= (parent == a) | (parent == b) | (parent == c);
+        }
+        good
+    }
+
+    /// The first rule that a face of the packet breaks: PMESH-FACE-04.
+    #[cold]
+    fn fault_of_faces(&self, layout: &PacketLayout, wedges: u32, first: u32, faces: Range<u32>) -> Fault {
+        let mut introduced = first;
         for face in faces.clone() {
             let at = layout.corners.start + (face - faces.start) as usize * CORNERS_BYTES;
             let corners = self.corners[face as usize];
             if corners.iter().any(|&w| w >= wedges) {
-                return Err((codes::CORNER, at));
+                return (codes::CORNER, at);
             }
             let [a, b, c] = corners.map(|w| self.vertex_of(w));
             if a == b || b == c || c == a {
-                return Err((codes::FACE_VERTICES, at));
+                return (codes::FACE_VERTICES, at);
             }
             let last = a.max(b).max(c).max(self.base() - 1);
             if last < introduced {
-                return Err((codes::FACE_ORDER, at));
+                return (codes::FACE_ORDER, at);
             }
-            if let Some(split) = last.checked_sub(self.base()) {
-                let parent = self.parents[split as usize];
-                if ![a, b, c].contains(&parent) {
-                    return Err((codes::FACE_LEVEL, at));
-                }
+            let parent = last.checked_sub(self.base()).map(|split| self.parents[split as usize]);
+            if parent.is_some_and(|parent| ![a, b, c].contains(&parent)) {
+                return (codes::FACE_LEVEL, at);
             }
-            ends.extend((introduced..last).map(|_| face));
             introduced = last;
         }
-        ends.extend((introduced..vertices.end).map(|_| faces.end));
-        Ok(ends)
+        debug_assert!(false, "faces {faces:?} were refused for nothing");
+        (codes::FACE_LEVEL, layout.corners.start)
     }
 
-    /// Adds the vertices of the packet one by one. `ends`: the end of the faces of each, the base as a whole being one.
-    fn climb(
-        &mut self,
-        payload: &[u8],
-        codes_at: usize,
-        vertices: Range<u32>,
-        first_face: u32,
-        ends: &[u32],
-    ) -> Result<(), Fault> {
-        let mut ends = ends.iter().copied();
-        let mut first_split = vertices.start;
-        if vertices.start < self.base() {
-            self.base_faces = ends.next().unwrap_or(first_face);
+    /// Takes the switch codes, which begin at byte `codes_at`, and adds the vertices of the packet up to `end`.
+    fn load_codes(&mut self, payload: &[u8], codes_at: usize, end: u32) -> Result<(), Fault> {
+        if self.level < self.base() {
             self.level = self.base();
-            first_split = self.base();
-            for face in 0..self.base_faces {
-                self.enter(face);
-            }
-        }
-        let bytes = &payload[codes_at..];
-        let mut bit = 0u64;
-        let mut undo = Vec::new();
-        for (vertex, end) in (first_split..vertices.end).zip(ends) {
-            let wedges = self.wedges_of(vertex);
-            let bits = code_bits(wedges.len() as u32);
-            let parent = self.parents[(vertex - self.base()) as usize];
-            let start = self.switches.len();
-            undo.clear();
             let mut slots = core::mem::take(&mut self.slots);
-            let read = slots.split(parent, vertex, |slot| {
-                let code = read_bits(bytes, bit, bits).ok_or((codes::SWITCH_LENGTH, payload.len()))?;
-                if code > 0 {
-                    let (face, corner) = ((slot / 3) as usize, (slot % 3) as usize);
-                    let present = self.corners[face][corner];
-                    match wedges.start.checked_add(code - 1).filter(|w| wedges.contains(w)) {
-                        Some(wedge) if self.target(wedge) == present => self.corners[face][corner] = wedge,
-                        _ => return Err((codes::SWITCH, codes_at + (bit / 8) as usize)),
-                    }
-                    undo.push((face, corner, present));
-                }
-                bit += u64::from(bits);
-                self.switches.push(code, bits);
-                Ok(code > 0)
-            });
-            self.slots = slots;
-            if let Err(fault) = read {
-                for &(face, corner, present) in &undo {
-                    self.corners[face][corner] = present;
-                }
-                self.switches.truncate(start);
-                return Err(fault);
+            for face in 0..self.base_faces {
+                self.enter(face, &mut slots);
             }
-            self.switch_at = self.switches.len();
-            self.touched.extend(undo.iter().map(|&(face, ..)| face as u32));
-            self.face_ends.push(end);
-            self.introduce_faces();
+            self.slots = slots;
         }
-        let used = bit.div_ceil(8);
+        let bytes = payload.get(codes_at..).unwrap_or(&[]);
+        let start = self.switch_at;
+        self.switches.append(bytes);
+        self.climb(end).map_err(|(code, at)| {
+            let missing = code == codes::SWITCH_LENGTH;
+            (code, if missing { payload.len() } else { codes_at + ((at - start) / 8) as usize })
+        })?;
+        let bits = self.switch_at - start;
+        let used = bits.div_ceil(8);
         if used != bytes.len() as u64 {
             return Err((codes::SWITCH_LENGTH, codes_at + used as usize));
         }
-        if read_bits(bytes, bit, (used * 8 - bit) as u32) != Some(0) {
-            return Err((codes::SWITCH_PADDING, codes_at + (bit / 8) as usize));
+        if self.switches.get(self.switch_at, (used * 8 - bits) as u32) != 0 {
+            return Err((codes::SWITCH_PADDING, codes_at + (bits / 8) as usize));
         }
+        self.switches.truncate(self.switch_at);
         Ok(())
     }
 
@@ -232,47 +292,38 @@ impl Replay {
             self.base_faces = 0;
             self.slots = super::Slots::default();
         } else {
-            self.slots.resize(vertices, faces);
+            self.slots.resize(vertices, vertices);
         }
+        self.touched.clear();
+        self.touched.resize(faces, faces);
         self.switches.truncate(self.switch_at);
     }
 }
 
-/// Appends the elements of one array of the payload to `to`, each checked.
-fn append<T>(
-    to: &mut Vec<T>,
-    payload: &[u8],
-    range: &Range<usize>,
-    size: usize,
-    read: impl Fn(&[u8]) -> T,
-    mut check: impl FnMut(&T) -> Result<(), Code>,
-) -> Result<(), Fault> {
-    let array = payload.get(range.clone()).unwrap_or(&[]);
-    to.reserve(array.len() / size);
-    for (k, element) in array.chunks_exact(size).enumerate() {
-        let value = read(element);
-        check(&value).map_err(|code| (code, range.start + k * size))?;
-        to.push(value);
+/// The elements of an array of the payload; the directory was checked for its length.
+fn elements<T: FromBytes + zerocopy::Immutable + zerocopy::KnownLayout>(bytes: &[u8]) -> &[T]
+where
+    [T]: FromBytes + zerocopy::Immutable + zerocopy::KnownLayout<PointerMetadata = usize>,
+{
+    <[T]>::ref_from_bytes(bytes).unwrap_or(&[])
+}
+
+/// Appends `elements`, each read by `read`, to an array that has `total` in the end.
+fn append<T: Copy, U>(to: &mut Vec<U>, elements: &[T], total: usize, read: impl Fn(T) -> U) {
+    reserve(to, elements.len(), total);
+    to.extend(elements.iter().map(|&element| read(element)));
+}
+
+fn floats<const N: usize>(from: [zerocopy::little_endian::F32; N]) -> [f32; N] {
+    from.map(zerocopy::little_endian::F32::get)
+}
+
+/// Checks every element; the index of the first that is not good. Without branches for each: they are good.
+fn check<T>(elements: &[T], good: impl Fn(&T) -> bool) -> Result<(), usize> {
+    match elements.iter().fold(true, |all, element| all & good(element)) {
+        true => Ok(()),
+        false => Err(elements.iter().position(|element| !good(element)).unwrap_or(0)),
     }
-    Ok(())
-}
-
-fn bytes<const N: usize>(from: &[u8]) -> [u8; N] {
-    let mut array = [0; N];
-    array.copy_from_slice(from);
-    array
-}
-
-fn number(from: &[u8]) -> u32 {
-    u32::from_le_bytes(bytes(from))
-}
-
-fn floats<const N: usize>(from: &[u8]) -> [f32; N] {
-    core::array::from_fn(|k| f32::from_le_bytes(bytes(&from[4 * k..4 * k + 4])))
-}
-
-fn indices(from: &[u8]) -> [u32; 3] {
-    core::array::from_fn(|k| number(&from[4 * k..4 * k + 4]))
 }
 
 #[cfg(test)]

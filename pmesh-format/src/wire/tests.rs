@@ -2,7 +2,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::*;
-use crate::storage::{Mode, Positions};
+use crate::storage::Mode;
 
 fn rows(key: &str) -> Vec<toml::Table> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/tables/pmesh.toml");
@@ -32,7 +32,7 @@ fn every_field_lies_where_the_specification_says() {
 fn the_arrays_of_a_packet_follow_each_other_as_the_specification_says() {
     let all = Attributes { normals: true, uvs: true, colours: true, materials: true, seams: true };
     let counts = PacketCounts { vertices: 5, wedges: 7, faces: 11, splits: 3 };
-    let layout = PacketLayout::new(counts, all).unwrap();
+    let layout = PacketLayout::new(counts, all, Positions::F32).unwrap();
     let ours = [
         ("positions", &layout.positions),
         ("normals", &layout.normals),
@@ -66,8 +66,11 @@ fn the_arrays_of_a_packet_follow_each_other_as_the_specification_says() {
     }
     assert_eq!(layout.rest, start);
     // What a file does not have takes no room.
-    let none = PacketLayout::new(counts, Attributes::default()).unwrap();
+    let none = PacketLayout::new(counts, Attributes::default(), Positions::F32).unwrap();
     assert_eq!(none.rest, 5 * 12 + 11 * 12 + 3 * 4);
+    // Quantised positions are four u16.
+    let quantised = PacketLayout::new(counts, all, Positions::Quantised(10)).unwrap();
+    assert_eq!((quantised.positions, quantised.rest), (0..5 * 8, layout.rest - 5 * 4));
 }
 
 #[test]

@@ -117,7 +117,8 @@ pub(crate) fn file(mesh: &ProgressiveMesh, packet: u32) -> Vec<u8> {
 }
 
 /// How packets and positions are stored: every way that this crate writes.
-pub(crate) const STORED: &[(Mode, Positions)] = &[(Mode::Raw, Positions::F32)];
+pub(crate) const STORED: &[(Mode, Positions)] =
+    &[(Mode::Raw, Positions::F32), (Mode::Raw, Positions::Quantised(12))];
 
 /// A file that is stored in that way.
 pub(crate) fn stored(mesh: &ProgressiveMesh, packet: u32, (mode, positions): (Mode, Positions)) -> Vec<u8> {

@@ -10,6 +10,7 @@ use crate::limits::Limits;
 use crate::mesh::Wedges;
 use crate::progressive::ProgressiveMesh;
 use crate::replay::Replay;
+use crate::storage::Positions;
 use crate::tests::{Kind, Parts, expected, header_of, random_mesh};
 
 /// Vertex k collapses onto k − 1, face k is (k, k + 1, k + 2). The payload of one packet: positions 0, corners 60, parents
@@ -181,4 +182,62 @@ fn a_refused_packet_leaves_no_trace() {
         replay.set_level(level).unwrap();
         assert_eq!(replay.mesh().triangles, expected(&mesh, level).triangles, "level {level}");
     }
+}
+
+fn quantised(mesh: &ProgressiveMesh, bits: u8, packet: u32) -> Vec<u8> {
+    let options = EncodeOptions { positions: Positions::Quantised(bits), ..EncodeOptions::fixed(packet) };
+    encode(mesh, &options).unwrap()
+}
+
+#[test]
+fn quantised_positions_are_read_as_written() {
+    for bits in Positions::LEAST_BITS..=Positions::MOST_BITS {
+        let mesh = random_mesh(40 + u64::from(bits), Kind { vertices: 30, seams: true, materials: false });
+        let file = quantised(&mesh, bits, 7);
+        assert_eq!(header_of(&file).positions, Positions::Quantised(bits));
+        let mut as_read = expected(&mesh, 30);
+        as_read.positions = Positions::Quantised(bits).quantised(&mesh.positions);
+        assert_ne!(as_read.positions, mesh.positions);
+        assert_eq!(crate::tests::replay_all(&file).mesh(), as_read);
+        // Four bytes a vertex fewer.
+        let plain = encode(&mesh, &EncodeOptions::fixed(7)).unwrap();
+        assert!(
+            plain.len() - file.len() >= 4 * 30 - 3 * 5,
+            "{bits} bits: padding differs by 3 bytes a packet"
+        );
+    }
+}
+
+#[test]
+fn every_defect_of_quantised_positions_has_its_code_and_its_place() {
+    // The strip: x from 0 to 4, y from 0 to 1, z 0: the lattice has 1023, 256 (255.75 and a half) and 0 steps.
+    let right = Parts::of(&quantised(&strip(), 10, 5));
+    for (vertex, component, value, good) in [
+        (0, 0, 1023u16, true),
+        (3, 0, 1024, false),
+        (2, 1, 256, true),
+        (2, 1, 257, false),
+        (4, 2, 1, false),
+        (1, 3, 1, false),
+        (4, 3, 0x8000, false),
+    ] {
+        let mut parts = right.clone();
+        let mut payload = parts.packets[0].2.clone();
+        put(&mut payload, 8 * vertex + 2 * component, &value.to_le_bytes());
+        parts.set_payload(0, payload);
+        let found = check(&parts.build(), &Limits::default())
+            .map_err(|error| (error.rule().name, error.offset().0 - parts.payload_offset(0)));
+        let expected = if good { Ok(()) } else { Err(("POSITION", 8 * vertex as u64)) };
+        assert_eq!(found, expected, "{value} as component {component} of vertex {vertex}");
+    }
+    // The box ends, along x and y, at the greatest number that there is, and y has 1022.6 steps: the last point lies beyond.
+    let mut parts = right;
+    put(&mut parts.specific, 52, &(f32::MAX * 0.0004).to_le_bytes());
+    put(&mut parts.specific, 60, &f32::MAX.to_le_bytes());
+    put(&mut parts.specific, 64, &f32::MAX.to_le_bytes());
+    let mut payload = parts.packets[0].2.clone();
+    put(&mut payload, 8 + 2, &1023u16.to_le_bytes());
+    parts.set_payload(0, payload);
+    let found = check(&parts.build(), &Limits::default()).map_err(|error| error.rule().name);
+    assert_eq!(found, Err("POSITION"), "a coordinate that is not finite");
 }
