@@ -2,6 +2,7 @@
 //! to date. It shares nothing with [`pmesh_format`] but the header and the packet directory, and says of a packet that breaks a
 //! rule which one, and at which byte.
 
+mod lattice;
 mod raw;
 #[cfg(test)]
 mod tests;

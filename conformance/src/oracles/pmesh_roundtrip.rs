@@ -3,8 +3,8 @@
 use crate::choices::Choices;
 use crate::surfaces::{Kind, surface};
 use pmesh_format::{
-    Decoder, EncodeOptions, Event, IndexedMesh, Limits, PacketSize, ProgressiveMesh, Replay, Step, Wedges,
-    check, encode,
+    Decoder, EncodeOptions, Event, IndexedMesh, Limits, PacketSize, Positions, ProgressiveMesh, Replay, Step,
+    Wedges, check, encode,
 };
 
 /// Vertices, at most: what a mesh can get wrong shows in small ones.
@@ -26,6 +26,9 @@ pub fn pmesh_roundtrip(data: &[u8]) {
     assert_eq!(encode(&mesh, &options).as_ref(), Ok(&file), "encoded twice, and the bytes differ");
     assert_eq!(check(&file, &Limits::default()), Ok(()), "what the encoder wrote is refused");
 
+    // Doing it twice changes nothing more.
+    let mesh = ProgressiveMesh { positions: options.positions.quantised(&mesh.positions), ..mesh };
+    assert_eq!(options.positions.quantised(&mesh.positions), mesh.positions);
     let levels = expected_levels(&mesh);
     let mut decoder = Decoder::new(Limits::default());
     let mut replay = Replay::default();
@@ -51,9 +54,10 @@ fn choose_options(choices: &mut Choices<'_>) -> EncodeOptions {
             percent: u32::from(choices.byte()),
             most: 1 + u32::from(choices.byte() % 16),
         },
-        _ => return EncodeOptions::default(),
+        _ => EncodeOptions::default().packets,
     };
-    EncodeOptions { packets, ..EncodeOptions::new() }
+    let positions = Positions::ALL[usize::from(choices.byte()) % Positions::ALL.len()];
+    EncodeOptions { packets, positions, ..EncodeOptions::new() }
 }
 
 /// A surface, or any mesh whose tables are valid.

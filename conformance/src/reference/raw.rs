@@ -1,5 +1,6 @@
 //! Packets of mode `raw`: `spec/pmesh.md`, sections 4 to 7.
 
+use super::lattice::Lattice;
 use super::{Fault, Tables};
 use pmesh_format::{Header, PacketEntry, Positions};
 use std::ops::Range;
@@ -61,11 +62,11 @@ pub(super) fn take(
     let materials = array(has.materials, 2 * f);
     let mut at = end;
 
-    for k in 0..brought.vertices.len() {
-        let place = positions + position_bytes * k;
-        let position = position(header, payload, place)?;
-        tables.positions.push(position);
-    }
+    let v = brought.vertices.len();
+    tables.positions.extend(match header.positions.bits() {
+        None => (0..v).map(|k| floats(header, payload, positions + 12 * k)).collect::<Result<Vec<_>, _>>()?,
+        Some(bits) => points(header, bits, payload, v)?,
+    });
     for k in 0..w {
         if has.normals {
             let normal = [0, 4, 8].map(|c| f32_at(payload, normals + 12 * k + c));
@@ -102,7 +103,8 @@ pub(super) fn take(
     levels(tables, base, &brought, &faces, payload, at)
 }
 
-fn position(header: &Header, payload: &[u8], at: usize) -> Result<[f32; 3], Fault> {
+/// PMESH-POS-01 and PMESH-POS-02.
+fn floats(header: &Header, payload: &[u8], at: usize) -> Result<[f32; 3], Fault> {
     let position = [0, 4, 8].map(|c| f32_at(payload, at + c));
     for (k, x) in position.iter().enumerate() {
         if !(x.is_finite() && header.bounds[0][k] <= *x && *x <= header.bounds[1][k]) {
@@ -110,6 +112,24 @@ fn position(header: &Header, payload: &[u8], at: usize) -> Result<[f32; 3], Faul
         }
     }
     Ok(position)
+}
+
+/// PMESH-POS-03 and PMESH-POS-04: first all positions by their numbers, then by their coordinates.
+fn points(header: &Header, bits: u8, payload: &[u8], count: usize) -> Result<Vec<[f32; 3]>, Fault> {
+    let lattice = Lattice::new(header.bounds, bits);
+    let number = |at: usize| i64::from(u16::from_le_bytes([payload[at], payload[at + 1]]));
+    for k in 0..count {
+        let at = 8 * k;
+        if (0..3).any(|axis| number(at + 2 * axis) > lattice.most[axis]) || number(at + 6) != 0 {
+            return Err(Fault { code: POSITION, at });
+        }
+    }
+    let positions = (0..count).map(|k| lattice.position([0, 2, 4].map(|c| number(8 * k + c))));
+    let judged = positions.enumerate().map(|(k, position)| {
+        let finite = position.iter().all(|x| x.is_finite());
+        if finite { Ok(position) } else { Err(Fault { code: POSITION, at: 8 * k }) }
+    });
+    judged.collect()
 }
 
 fn finite(numbers: &[f32], at: usize) -> Result<(), Fault> {

@@ -20,6 +20,7 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     list.extend(counts(twin(EMPTY), twin(SEAM)));
     list.extend(directory(octahedron));
     list.extend(names(twin(SEAM)));
+    list.extend(points(twin("0022-raw-q12"), twin("0027-raw-q12-plane")));
     list.extend(numbers(octahedron, twin(SEAM), twin(ONE_PACKET)));
     list.extend(topology(octahedron, twin(ONE_PACKET)));
     list.extend(wedges(twin(SEAM)));
@@ -426,6 +427,41 @@ fn numbers(file: &[u8], seam: &[u8], coloured: &[u8]) -> Vec<Refused> {
             mesh::ATTRIBUTE,
             in_packet(coloured, 0, 6 * 12 + 4, &f32::INFINITY.to_le_bytes()),
             "texture coordinates at infinity",
+        ),
+    ]
+}
+
+/// Points of a lattice: four u16 each.
+fn points(file: &[u8], plane: &[u8]) -> Vec<Refused> {
+    let number = |file: &[u8], point: usize, at: usize, value: u16| {
+        in_packet(file, 0, 8 * point + 2 * at, &value.to_le_bytes())
+    };
+    let longest = {
+        let [low, high] = header(file).bounds;
+        let extent = |k: usize| f64::from(high[k]) - f64::from(low[k]);
+        (0..3).max_by(|&a, &b| extent(a).total_cmp(&extent(b))).expect("three axes")
+    };
+    vec![
+        (
+            "0022-raw-q12",
+            "point-outside",
+            mesh::POSITION,
+            number(file, 1, longest, 4096),
+            "a number of 13 bits in a lattice of 12",
+        ),
+        (
+            "0027-raw-q12-plane",
+            "point-off-plane",
+            mesh::POSITION,
+            number(plane, 2, 1, 1),
+            "a number other than 0 along an axis without extent",
+        ),
+        (
+            "0022-raw-q12",
+            "point-fourth",
+            mesh::POSITION,
+            number(file, 0, 3, 1),
+            "a fourth number that is not 0",
         ),
     ]
 }

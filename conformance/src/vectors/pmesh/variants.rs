@@ -67,10 +67,43 @@ fn raw() -> Vec<Variant> {
     ]
 }
 
-pub(super) fn accepted() -> Vec<Vector> {
-    let variants = raw();
+/// Names of the raw files of each number of bits, from the least on.
+const QUANTISED: [&str; 7] = [
+    "0020-raw-q10",
+    "0021-raw-q11",
+    "0022-raw-q12",
+    "0023-raw-q13",
+    "0024-raw-q14",
+    "0025-raw-q15",
+    "0026-raw-q16",
+];
+
+fn raw_quantised() -> Vec<Variant> {
+    let raw = |bits| options(Mode::Raw, Positions::Quantised(bits), PacketSize::Fixed(8));
+    let mut variants: Vec<Variant> = (10..)
+        .zip(QUANTISED)
+        .map(|(bits, name)| (name, bordered(9), raw(bits), "positions on a lattice along the longest side"))
+        .collect();
+    let flat = |mut mesh: ProgressiveMesh, axes: &[usize]| {
+        mesh.positions.iter_mut().for_each(|p| axes.iter().for_each(|&axis| p[axis] = -3.25));
+        mesh
+    };
+    variants.extend([
+        ("0027-raw-q12-plane", flat(closed(8), &[1]), raw(12), "a mesh without extent along one axis"),
+        ("0028-raw-q12-point", flat(closed(5), &[0, 1, 2]), raw(12), "a mesh without extent: the step is 0"),
+        (
+            "0029-raw-q14-attributes",
+            all_attributes(9),
+            raw(14),
+            "points of a lattice beside attributes, whose arrays keep their alignment",
+        ),
+    ]);
     variants
-        .into_iter()
+}
+
+pub(super) fn accepted() -> Vec<Vector> {
+    let variants = raw().into_iter().chain(raw_quantised());
+    variants
         .map(|(name, mesh, options, why)| {
             let file = encode(&mesh, &options).unwrap_or_else(|error| panic!("{name}: {error}"));
             Vector::accepted(Format::Pmesh, name, file, why)
