@@ -70,6 +70,15 @@ pub mod codes {
         SWITCH_PADDING = 513, Invalid, "PMESH-SWI-03", "unused bits after the switch codes are not zero";
         /// A packet that is not the next one.
         PACKET_ORDER = 514, Invalid, "PMESH-LVL-04", "this packet is not the one that comes next";
+        /// A coded packet whose symbols do not fill it.
+        CODED_LENGTH = 515, Invalid, "PMESH-COD-03", "the symbols of a coded packet do not fill it exactly";
+        /// Padding of a coded packet that is not zero.
+        CODED_PADDING = 516, Invalid, "PMESH-COD-03", "bytes after the symbols of a coded packet are not zero";
+        /// Faces of a coded packet that are more or fewer than the directory says.
+        CODED_FACES = 517, Invalid, "PMESH-COD-07",
+            "the faces of a coded packet are more or fewer than the directory says";
+        /// A coded packet that looks at more slots than its bytes allow.
+        CODED_WORK = 518, Invalid, "PMESH-COD-12", "a coded packet asks for more work than its bytes allow";
         /// More vertices, wedges or faces than the caller allows.
         LIMIT_COUNTS = 620, Limit, "PMESH-LIM-02", "the mesh has more vertices, wedges or faces than the limit";
     }

@@ -7,7 +7,7 @@ use ivg_wire::{
 };
 
 use crate::attributes::Attributes;
-use crate::coded::{Known, Saver, arranged};
+use crate::coded::{Known, Saver, arranged, cells};
 use crate::bits::Bits;
 use crate::header::{Header, PARAMETER_BITS, PacketEntry};
 use crate::lattice::{Lattice, bounds};
@@ -142,7 +142,10 @@ pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>
     if options.mode == Mode::Coded && writer.attributes != Attributes::default() {
         return Err(EncodeError::Option { option: "mode" });
     }
-    let cells = writer.cells();
+    let cells = match options.mode {
+        Mode::Raw => Vec::new(),
+        Mode::Coded => cells(writer.bounds, options.positions, &mesh.positions),
+    };
     let mut saver = (options.mode == Mode::Coded).then(|| writer.saver(&cells));
     let names = write_names(&mesh.material_names).ok_or(EncodeError::MaterialName)?;
 
@@ -232,13 +235,6 @@ impl<'a> Writer<'a> {
         Self { mesh, attributes, mode, positions, bounds, wedge_starts, faces, switches }
     }
 
-    /// The lattice points of the vertices; none where positions are not quantised.
-    fn cells(&self) -> Vec<[i32; 3]> {
-        let Some(bits) = self.positions.bits() else { return Vec::new() };
-        let lattice = Lattice::new(self.bounds, bits);
-        self.mesh.positions.iter().map(|&p| lattice.nearest(p).map(|x| x as i32)).collect()
-    }
-
     /// The writer of coded packets.
     fn saver<'b>(&'b self, cells: &'b [[i32; 3]]) -> Saver<'b> {
         let known = Known {
@@ -247,7 +243,7 @@ impl<'a> Writer<'a> {
             switches: (&self.switches.codes, &self.switches.ranges),
             cells,
         };
-        Saver::new(known, Lattice::new(self.bounds, self.positions.bits().unwrap_or(0)).top())
+        Saver::new(known, self.bounds, self.positions)
     }
 
     /// The packet that follows `before`; its payload's length is not known yet.

@@ -158,9 +158,6 @@ impl Header {
             _ => return Err(fail(codes::MODE_UNKNOWN, at::MODE)),
         }
         match Positions::from_id(wire.positions) {
-            Some(Positions::F32) if header.mode == Mode::Coded => {
-                return Err(fail(codes::POSITIONS_UNKNOWN, at::POSITIONS));
-            }
             Some(_) => {}
             None if wire.positions == 0 => return Err(fail(codes::POSITIONS_FORBIDDEN, at::POSITIONS)),
             None => return Err(fail(codes::POSITIONS_UNKNOWN, at::POSITIONS)),

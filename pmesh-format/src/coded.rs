@@ -1,0 +1,181 @@
+//! Coded packets (spec/pmesh.md, section 8): the same things as raw ones, entropy coded.
+//!
+//! Writer and reader take the same walk over the growing mesh and ask a [`Coder`] for everything that is not known yet: the
+//! writer's tells what it is given, the reader's what it finds. What a packet says is then put into the form of a raw one.
+
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+use ivg_wire::Code;
+
+use crate::code::codes;
+use crate::header::PacketEntry;
+
+mod cut;
+mod exact;
+mod geometry;
+mod load;
+mod models;
+mod order;
+mod priors;
+mod rans;
+mod ring;
+mod save;
+mod walk;
+
+pub(crate) use order::arranged;
+pub(crate) use save::{Known, Saver, cells};
+
+use crate::slots::Slots;
+use cut::Cuts;
+use geometry::{Cell, Residuals};
+use models::Binary;
+
+/// What is wrong with a payload, and at which byte of it.
+pub(crate) type Fault = (Code, usize);
+
+/// Slots that are looked at for each byte of a payload, at most (PMESH-COD-11).
+const SLOTS_A_BYTE: u64 = 64;
+
+/// The least payload of a coded packet that brings so many vertices and faces after so many vertices (PMESH-COD-11).
+pub(crate) fn least_bytes(start: u32, vertices: u32, faces: u32) -> u64 {
+    4 + (u64::from(vertices) + u64::from(faces)) / 4 + u64::from(start) / 64
+}
+
+/// What is remembered of a vertex for contexts (PMESH-COD-05).
+#[derive(Clone, Copy, Debug, Default)]
+struct Shape {
+    /// Octave of its distance from its neighbours.
+    scale: u8,
+    /// Class of its height above the plane that it was expected in.
+    height: u8,
+    /// Whether it has been split.
+    split: bool,
+    /// The packet that brought it, or the last one that split it.
+    packet: u32,
+}
+
+/// Everything that is learnt.
+#[derive(Clone, Debug)]
+struct Models {
+    /// Whether a vertex is split (once more); by how often it was in this packet, its history, faces and scale.
+    parents: [Binary; PARENTS],
+    /// Whether a run of faces that go round switches and a face comes at either end.
+    regular: Binary,
+    /// Whether a face switches; by what the one before did.
+    switches: [Binary; 3],
+    /// Whether there is one more new face on this side; by side, how many there are, and whether one is expected.
+    faces: [Binary; 2 * 4 * 2],
+    /// Whether the third vertex of a new face is the expected one; whether it is a neighbour of the parent.
+    thirds: [Binary; 2],
+    cuts: Cuts,
+    residuals: Residuals,
+}
+
+/// Models of parents: of vertices not split in this packet (6 histories), split once, more often; 9 numbers of faces, 16
+/// scales.
+const PARENTS: usize = 8 * 9 * 16;
+
+impl Models {
+    fn new() -> Self {
+        let even = Binary::new(1 << 14);
+        Self {
+            parents: [Binary::new(1 << 13); PARENTS],
+            regular: Binary::new(32_000),
+            switches: [even; 3],
+            faces: [even; 16],
+            thirds: [Binary::new(30_000); 2],
+            cuts: Cuts::new(),
+            residuals: Residuals::new(),
+        }
+    }
+}
+
+/// What is known after some coded packets: connectivity of the finest level, lattice points, models.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    models: Box<Models>,
+    packets: u32,
+    corners: Vec<[u32; 3]>,
+    slots: Slots,
+    cells: Vec<Cell>,
+    shapes: Vec<Shape>,
+    parents: Vec<u32>,
+    /// Faces with each vertex from the base on.
+    face_ends: Vec<u32>,
+    base: u32,
+}
+
+/// What a packet has changed and brought, for the raw form and for taking it back.
+#[derive(Debug, Default)]
+struct Changes {
+    /// Shapes that were there before, with their vertices.
+    shapes: Vec<(u32, Shape)>,
+    /// Faces with their corners as introduced.
+    introduced: Vec<[u32; 3]>,
+    /// Positions, where they are binary32 numbers.
+    positions: Vec<[f32; 3]>,
+    /// For each vertex from the base on, how many slots its parent had.
+    counts: Vec<u32>,
+    /// Whether these slots switch, in canonical order.
+    switches: Vec<bool>,
+    /// Slots that were looked at.
+    looked_at: u64,
+}
+
+impl State {
+    /// Before the first packet.
+    pub(crate) fn new(base: u32) -> Self {
+        Self {
+            models: Box::new(Models::new()),
+            packets: 0,
+            corners: Vec::new(),
+            slots: Slots::default(),
+            cells: Vec::new(),
+            shapes: Vec::new(),
+            parents: Vec::new(),
+            face_ends: Vec::new(),
+            base,
+        }
+    }
+
+    /// Takes back what a packet that begins so has changed, the models excepted.
+    fn take_back(&mut self, extent: &PacketEntry, changes: &Changes) {
+        let first = extent.vertices.start.max(self.base);
+        for vertex in (first..self.base + self.parents.len() as u32).rev() {
+            let split = (vertex - self.base) as usize;
+            let before = split.checked_sub(1).map_or(0, |k| self.face_ends[k]);
+            let before = before.max(extent.faces.start);
+            self.pop_faces(before.min(self.corners.len() as u32));
+            let parent = self.parents[split];
+            for &slot in self.slots.of(vertex) {
+                self.corners.as_flattened_mut()[slot as usize] = parent;
+            }
+            self.slots.merge(vertex, parent, |_, _| {});
+            self.parents.pop();
+            self.face_ends.pop();
+        }
+        self.pop_faces(extent.faces.start);
+        for &(vertex, shape) in changes.shapes.iter().rev() {
+            self.shapes[vertex as usize] = shape;
+        }
+        let start = extent.vertices.start as usize;
+        self.cells.truncate(start);
+        self.shapes.truncate(start);
+        self.slots.resize(start, usize::MAX);
+    }
+
+    /// Takes faces away until there are that many.
+    fn pop_faces(&mut self, count: u32) {
+        while self.corners.len() > count as usize {
+            for corner in self.corners.pop().unwrap_or_default() {
+                self.slots.pop(corner);
+            }
+        }
+    }
+}
+
+const LENGTH: Fault = (codes::CODED_LENGTH, 0);
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,175 @@
+//! Where the next vertex is, in whole numbers: predictions, and how far from them (PMESH-COD-08 to -10).
+
+use super::models::Symbols;
+use super::priors::{HEIGHTS, SPREADS};
+use super::rans::Coder;
+
+/// A point of the lattice, or the difference of two.
+pub(super) type Cell = [i32; 3];
+
+/// Contexts of a residual; from class 24 on the lowest bits are coded as they are.
+pub(super) const CONTEXTS: usize = 24;
+
+/// The models of residuals.
+#[derive(Clone, Debug)]
+pub(super) struct Residuals {
+    /// Of the two coordinates along the surface.
+    pub(super) along: [Symbols; CONTEXTS],
+    /// Of the third one.
+    pub(super) height: [Symbols; CONTEXTS],
+}
+
+impl Residuals {
+    pub(super) fn new() -> Self {
+        Self { along: SPREADS.map(Symbols::new), height: HEIGHTS.map(Symbols::new) }
+    }
+}
+
+/// Four classes an octave: 0 for 1, 4 for 2, 5 for 2.5, 8 for 4 and so on.
+#[inline(always)]
+pub(super) fn class(x: u64) -> u32 {
+    let x = x.max(1);
+    let octave = x.ilog2();
+    4 * octave + ((x << 2 >> octave) & 3) as u32
+}
+
+/// Eight times the logarithm to base 2 of a number, linear inside octaves; 0 for 0.
+#[inline(always)]
+pub(super) fn logarithm(x: u64) -> u32 {
+    let x = x.max(1);
+    let octave = x.ilog2();
+    8 * octave + ((x << 3 >> octave) & 7) as u32
+}
+
+#[inline(always)]
+pub(super) fn difference(a: Cell, b: Cell) -> [i64; 3] {
+    core::array::from_fn(|k| i64::from(a[k]) - i64::from(b[k]))
+}
+
+#[inline(always)]
+pub(super) fn squared(d: [i64; 3]) -> u64 {
+    (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) as u64
+}
+
+#[inline(always)]
+pub(super) fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// A number of up to 32 equally probable bits, the lowest 16 first.
+#[inline(always)]
+pub(super) fn raw(coder: &mut impl Coder, bits: u32, value: u32) -> u32 {
+    if bits <= 16 {
+        return coder.raw(bits, value);
+    }
+    let low = coder.raw(16, value & 0xFFFF);
+    low | coder.raw(bits - 16, value >> 16) << 16
+}
+
+/// A residual of that class.
+#[inline(always)]
+pub(super) fn residual<C: Coder>(
+    coder: &mut C,
+    models: &mut [Symbols; CONTEXTS],
+    class: u32,
+    value: i32,
+) -> i32 {
+    let shift = (class / 4).saturating_sub(5);
+    let context = if shift > 0 { 20 + class % 4 } else { class } as usize;
+    let half = (1i64 << shift) >> 1;
+    let moved = i64::from(value) + half;
+    let (whole, low) = (moved >> shift, (moved & ((1 << shift) - 1)) as u32);
+    let size = whole.unsigned_abs() as u32;
+    let (symbol, extra) = match size {
+        0..4 => (size, 0),
+        4..128 => {
+            let octave = size.ilog2();
+            (2 * octave + (size >> (octave - 1) & 1), octave - 1)
+        }
+        128..256 => (14, 7),
+        _ => (15, size.ilog2()),
+    };
+    let symbol = coder.symbol(&mut models[context], symbol as usize) as u32;
+    // For the reader, what the symbol says; the writer's numbers are the same.
+    let (first, extra) = match symbol {
+        0..4 => (symbol, 0),
+        4..14 => ((2 + symbol % 2) << (symbol / 2 - 1), symbol / 2 - 1),
+        14 => (128, 7),
+        _ => {
+            let octave = coder.raw(5, extra).min(27);
+            (1 << octave, octave)
+        }
+    };
+    let size_is = first + if extra > 0 { raw(coder, extra, size.wrapping_sub(first)) } else { 0 };
+    let low = if shift > 0 { raw(coder, shift, low) } else { 0 };
+    let negative = size_is > 0 && coder.raw(1, u32::from(whole < 0)) == 1;
+    let whole = if negative { -i64::from(size_is) } else { i64::from(size_is) };
+    ((whole << shift) + i64::from(low) - half) as i32
+}
+
+/// What is known of the place of a new vertex.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// The mean of its neighbours.
+    mean: Cell,
+    /// How far they are from it along each axis, as classes.
+    spreads: [u32; 3],
+    /// The normal of the plane that it is expected in, through the parent.
+    normal: [i64; 3],
+    parent: Cell,
+    /// The class of the height above the plane.
+    height: u32,
+}
+
+impl Place {
+    /// From the neighbours, the parent one of them, the normal of the faces that switch, and the mean of the neighbours' own
+    /// classes of heights. `coarse`: by how many bits spreads are shortened.
+    #[inline(always)]
+    pub(super) fn new(neighbours: &[Cell], parent: Cell, normal: [i64; 3], height: u32) -> Self {
+        let count = neighbours.len().max(1) as i64;
+        let mut mean = parent;
+        for (k, mean) in mean.iter_mut().enumerate() {
+            let sum: i64 = neighbours.iter().map(|n| i64::from(n[k])).sum();
+            *mean = (2 * sum + count).div_euclid(2 * count) as i32;
+        }
+        let spreads = core::array::from_fn(|k| {
+            let sum: u64 = neighbours.iter().map(|n| u64::from(n[k].abs_diff(mean[k]))).sum();
+            class(8 * sum / count as u64 + 1)
+        });
+        // At most 24 bits are left of each component, so that every product below fits in 53.
+        let bits = normal.iter().fold(0, |all, n| all | n.unsigned_abs()).max(1).ilog2() + 1;
+        let normal = normal.map(|n| n >> bits.saturating_sub(24));
+        Self { mean, spreads, normal, parent, height }
+    }
+
+    /// The cell of the vertex, and the class of its height.
+    #[inline(always)]
+    pub(super) fn code<C: Coder>(&self, coder: &mut C, models: &mut Residuals, cell: Cell) -> (Cell, u8) {
+        let [x, y, z] = self.normal.map(i64::unsigned_abs);
+        let main = if x >= y && x >= z {
+            0
+        } else if y >= z {
+            1
+        } else {
+            2
+        };
+        let (a, b) = ((main + 1) % 3, (main + 2) % 3);
+        let mut found = [0; 3];
+        for k in [a, b] {
+            let from = cell[k].wrapping_sub(self.mean[k]);
+            found[k] = self.mean[k].wrapping_add(residual(coder, &mut models.along, self.spreads[k], from));
+        }
+        let expected = if self.normal[main] == 0 {
+            self.mean[main]
+        } else {
+            let along = |k: usize| self.normal[k] * (i64::from(found[k]) - i64::from(self.parent[k]));
+            let (over, under) = (-along(a) - along(b), self.normal[main]);
+            let (over, under) = if under < 0 { (-over, -under) } else { (over, under) };
+            self.parent[main].wrapping_add((2 * over + under).div_euclid(2 * under) as i32)
+        };
+        let from = cell[main].wrapping_sub(expected);
+        let height = residual(coder, &mut models.height, self.height, from);
+        found[main] = expected.wrapping_add(height);
+        (found, class(2 * u64::from(height.unsigned_abs()) + 1) as u8)
+    }
+}

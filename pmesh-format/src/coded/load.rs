@@ -1,0 +1,96 @@
+//! Reading a coded packet: what it says in the form of a raw one.
+
+use alloc::vec::Vec;
+
+use super::rans::Reader;
+use super::walk::{Bounds, Nothing};
+use super::{Changes, Fault, LENGTH, SLOTS_A_BYTE, State, least_bytes};
+use crate::bits::Bits;
+use crate::code::codes;
+use crate::header::{Header, PacketEntry};
+
+impl State {
+    /// Reads the next packet: the payload of a raw packet that says the same.
+    ///
+    /// # Errors
+    /// The first rule that it breaks; nothing has changed then.
+    pub(crate) fn read(
+        &mut self,
+        header: &Header,
+        entry: &PacketEntry,
+        payload: &[u8],
+    ) -> Result<Vec<u8>, Fault> {
+        let (models, packets) = (self.models.clone(), self.packets);
+        let mut changes = Changes::default();
+        let read = self.read_packet(header, entry, payload, &mut changes);
+        if read.is_err() {
+            self.take_back(entry, &changes);
+            self.models = models;
+            self.packets = packets;
+        }
+        read.map(|()| self.raw(entry, &changes))
+    }
+
+    fn read_packet(
+        &mut self,
+        header: &Header,
+        extent: &PacketEntry,
+        payload: &[u8],
+        changes: &mut Changes,
+    ) -> Result<(), Fault> {
+        let bounds = Bounds::new(header.bounds, header.positions, payload.len() as u64);
+        let mut reader = Reader::new(payload).ok_or(LENGTH)?;
+        self.packet(&mut reader, &Nothing, extent, bounds, changes)?;
+        if !reader.at_end() {
+            return Err(LENGTH);
+        }
+        let left = reader.left().count();
+        let count = |range: &core::ops::Range<u32>| range.end - range.start;
+        let least = least_bytes(extent.vertices.start, count(&extent.vertices), count(&extent.faces));
+        let needed = least.max(changes.looked_at.div_ceil(SLOTS_A_BYTE));
+        // Padding is for what has to be long enough, and for nothing else.
+        if left > 0 && payload.len() as u64 > needed {
+            return Err((codes::CODED_LENGTH, payload.len() - left));
+        }
+        if reader.left().any(|byte| byte != 0) {
+            return Err((codes::CODED_PADDING, payload.len() - left));
+        }
+        Ok(())
+    }
+
+    /// What a packet has brought, as the payload of a raw one (PMESH-PKT-02).
+    fn raw(&self, extent: &PacketEntry, changes: &Changes) -> Vec<u8> {
+        let vertices = extent.vertices.start as usize..extent.vertices.end as usize;
+        let splits = changes.counts.len();
+        let mut out = Vec::with_capacity(
+            8 * vertices.len() + 12 * changes.introduced.len() + 4 * splits + changes.switches.len() / 8 + 8,
+        );
+        for x in changes.positions.as_flattened() {
+            out.extend_from_slice(&x.to_le_bytes());
+        }
+        let quantised = if changes.positions.is_empty() { vertices } else { 0..0 };
+        for cell in &self.cells[quantised] {
+            let [x, y, z] = cell.map(|x| (x as u16).to_le_bytes());
+            out.extend_from_slice([x, y, z, [0, 0]].as_flattened());
+        }
+        for corner in changes.introduced.as_flattened() {
+            out.extend_from_slice(&corner.to_le_bytes());
+        }
+        for parent in &self.parents[self.parents.len() - splits..] {
+            out.extend_from_slice(&parent.to_le_bytes());
+        }
+        let mut bits = Bits::default();
+        let mut switches = &changes.switches[..];
+        for &count in &changes.counts {
+            let (now, later) = switches.split_at(count as usize);
+            for part in now.rchunks(64) {
+                // Codes stand in descending order of slots (PMESH-SWI-01).
+                let word = part.iter().fold(0, |word, &switch| word << 1 | u64::from(switch));
+                bits.push(word, part.len() as u32);
+            }
+            switches = later;
+        }
+        out.extend_from_slice(&bits.to_bytes());
+        out
+    }
+}
