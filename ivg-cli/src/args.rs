@@ -199,6 +199,10 @@ pub(crate) struct RenderArguments {
     /// Brightness: factor on radiance before the tone curve [default: from the scene].
     #[arg(long, value_name = "FACTOR", value_parser = crate::scene_args::positive)]
     pub(crate) exposure: Option<f32>,
+    /// Packed scenes: take of each mesh the coarsest level that is off by at most so many pixels, by the errors stored in its
+    /// file [default: the finest level].
+    #[arg(long, value_name = "PIXELS", value_parser = crate::scene_args::positive)]
+    pub(crate) pixel_error: Option<f32>,
     /// Samples a pixel of the path-traced reference.
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = crate::scene_args::count::<u32>)]
     pub(crate) samples: u32,

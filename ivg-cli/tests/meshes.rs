@@ -202,3 +202,36 @@ fn info_tells_how_a_mesh_is_stored() {
     let shown = text(&place.ok(&["info", "sheet.pmesh"]));
     assert!(shown.contains(&format!("bits_per_vertex      {}", report["bits_per_vertex"])), "{shown}");
 }
+
+#[test]
+fn a_picture_takes_levels_as_coarse_as_its_pixels_allow() {
+    let place = Workplace::new();
+    let light = "usemtl light\nv 10 10 60\nv 20 10 60\nv 10 20 60\nf 901 903 902\n";
+    place.write("room.mtl", support::ROOM_MTL.as_bytes());
+    let scene = format!("mtllib room.mtl\nusemtl white\n{}o lamp\n{light}", sheet(30));
+    place.write("sheet.obj", scene.as_bytes());
+    place.ok(&[
+        "pack",
+        "sheet.obj",
+        "-o",
+        "scene",
+        "--photons",
+        "2000",
+        "--grid",
+        "3x3x3",
+        "--coarse-vertices",
+        "50",
+    ]);
+    let triangles = |options: &[&str]| {
+        let picture = ["render", "scene", "-o", "picture.png", "--renderer", "cpu", "--size", "64x48"];
+        let said = text(&place.ok(&[&picture[..], options].concat()));
+        let words: Vec<&str> = said.split_whitespace().collect();
+        let at = words.iter().position(|word| *word == "triangles,").expect("the number of triangles");
+        words[at - 1].parse::<usize>().expect("a number")
+    };
+    let [all, fine, coarse] = [&[][..], &["--pixel-error", "0.5"], &["--pixel-error", "8"]].map(triangles);
+    assert!(all > fine && fine > coarse, "{all}, {fine}, {coarse}");
+    let output = place.run(&["render", "sheet.obj", "-o", "bad.png", "--pixel-error", "1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("packed scenes"), "{}", text(&output.stderr));
+}

@@ -12,6 +12,7 @@ use tokio::sync::oneshot;
 use crate::client::{FetchError, FetchOptions, Goal, Observer, Progress};
 use crate::manifest::Manifest;
 use crate::server::{self, ServeError, ServerHandle, ServerOptions};
+use crate::view::View;
 
 /// A server on threads of its own.
 ///
@@ -141,6 +142,12 @@ impl Session {
     #[must_use]
     pub fn scene_at(&mut self, share: f64) -> Scene {
         self.session.scene_at(share)
+    }
+
+    /// As [`crate::Session::scene_for`].
+    #[must_use]
+    pub fn scene_for(&mut self, view: &View) -> Scene {
+        self.session.scene_for(view)
     }
 
     /// As [`crate::Session::progress`].

@@ -74,6 +74,7 @@ mod local;
 mod manifest;
 mod pack;
 mod server;
+mod view;
 
 pub use blocking::serve_blocking;
 pub use client::{
@@ -86,3 +87,4 @@ pub use local::{LoadError, LocalScene};
 pub use manifest::{Manifest, ManifestError, MeshEntry, scene_mesh};
 pub use pack::{PackError, PackInput, PackOptions, PackReport, pack};
 pub use server::{ServeError, ServerHandle, ServerOptions, serve};
+pub use view::View;

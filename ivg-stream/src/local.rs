@@ -10,6 +10,7 @@ use pmesh_format::Replay;
 
 use crate::client::{Assembly, FileReader, SCENE_FILE, SceneLimits};
 use crate::manifest::{Manifest, ManifestError};
+use crate::view::View;
 
 /// A scene directory that has been read and verified whole: what a [`Session`](crate::Session) holds once
 /// everything has arrived.
@@ -100,6 +101,12 @@ impl LocalScene {
     #[must_use]
     pub fn scene_at(&mut self, share: f64) -> Scene {
         self.assembly.scene_at(share)
+    }
+
+    /// The scene with each mesh at its coarsest level that is exact enough for a picture, by the errors stored in its file.
+    #[must_use]
+    pub fn scene_for(&mut self, view: &View) -> Scene {
+        self.assembly.scene_for(view)
     }
 }
 

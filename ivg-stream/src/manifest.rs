@@ -71,7 +71,13 @@ impl MeshEntry {
     pub(crate) fn put_level(&self, replay: &mut Replay, share: f64, scene: &mut Scene) {
         let header = replay.header();
         let wanted = (share.clamp(0.0, 1.0) * f64::from(header.vertex_count)).ceil() as u32;
-        let level = wanted.clamp(header.base_vertices, replay.max_level().max(header.base_vertices));
+        self.put(replay, wanted, scene);
+    }
+
+    /// Puts the level of so many vertices, or the nearest that `replay` has, in the place of the mesh.
+    pub(crate) fn put(&self, replay: &mut Replay, wanted: u32, scene: &mut Scene) {
+        let coarsest = replay.header().base_vertices;
+        let level = wanted.clamp(coarsest, replay.max_level().max(coarsest));
         if replay.set_level(level).is_err() {
             return;
         }

@@ -6,7 +6,9 @@ use std::path::Path;
 
 use glam::DVec3;
 use ivg_scene::{Scene, import};
-use ivg_stream::{LoadError, LocalScene, PackError, PackInput, PackOptions, PackReport, SceneLimits, pack};
+use ivg_stream::{
+    LoadError, LocalScene, PackError, PackInput, PackOptions, PackReport, SceneLimits, View, pack,
+};
 use support::scene::{files_of, grid_bytes, pmesh_bytes, scene, strip, write_files};
 
 const VERTICES: u32 = 900;
@@ -177,4 +179,22 @@ fn a_directory_that_is_not_whole_is_refused_by_name() {
         std::os::unix::fs::symlink(outside.path().join("light.ivg"), home.path().join("light.ivg")).unwrap();
         assert!(open(home.path()).unwrap_err().to_string().contains("link out"));
     }
+}
+
+#[test]
+fn a_mesh_is_shown_as_exactly_as_a_picture_needs() {
+    let directory = tempfile::tempdir().unwrap();
+    pack_into(directory.path(), 20).unwrap();
+    let mut local = open(directory.path()).unwrap();
+    let camera = local.manifest().scene.camera_or_framed();
+    let mut vertices = |pixels: f32| {
+        let scene = local.scene_for(&View { camera, height: 1000, pixels });
+        scene.meshes.iter().map(|mesh| mesh.positions.len()).sum::<usize>()
+    };
+    let counts = [0.0, 0.5, 5.0, 50.0, f32::INFINITY].map(&mut vertices);
+    assert!(counts.is_sorted_by(|finer, coarser| finer >= coarser), "{counts:?}");
+    assert!(counts[0] > counts[1] && counts[1] > counts[4], "{counts:?}");
+    let finest: usize = local.scene_at(1.0).meshes.iter().map(|mesh| mesh.positions.len()).sum();
+    let coarsest: usize = local.scene_at(0.0).meshes.iter().map(|mesh| mesh.positions.len()).sum();
+    assert_eq!((counts[0], counts[4]), (finest, coarsest));
 }

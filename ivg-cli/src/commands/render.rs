@@ -8,9 +8,9 @@ use ivg_format::{Encoding, Quantity};
 use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction};
 use ivg_render::{Image, RenderOptions, RenderScene};
 use ivg_scene::plan::{self, PlanOptions};
-use ivg_scene::{Camera, EffectPlan};
+use ivg_scene::{Camera, EffectPlan, Scene};
 use ivg_stream::blocking::Session;
-use ivg_stream::{FetchOptions, Goal, LocalScene, SceneLimits};
+use ivg_stream::{FetchOptions, Goal, LocalScene, SceneLimits, View};
 
 use crate::args::{IndirectArgument, RenderArguments};
 use crate::baking::{self, LoadedScene};
@@ -33,7 +33,8 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     files::require_extension(&arguments.out, &["png"])?;
     let source = open(arguments)?;
     let scene = &source.loaded.scene;
-    let camera = camera(arguments, &source.loaded);
+    let camera = camera(arguments, scene);
+    let triangles = source.loaded.flat.triangles.len();
     let start = Instant::now();
     let (image, who) = if arguments.indirect == IndirectArgument::Path {
         (path_traced(arguments, &source.loaded, &camera)?, "path tracer".to_owned())
@@ -56,7 +57,7 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     let exposure = arguments.exposure.unwrap_or_else(|| ivg_render::auto_exposure(&image));
     picture::write_png(&arguments.out, &image, exposure)?;
     files::print(&format!(
-        "{}: {} x {}, exposure {exposure:.4}, {:.2} s on {who}\n",
+        "{}: {} x {}, {triangles} triangles, exposure {exposure:.4}, {:.2} s on {who}\n",
         arguments.out.display(),
         image.width(),
         image.height(),
@@ -72,15 +73,26 @@ fn open(arguments: &RenderArguments) -> Result<Source, Failure> {
         let mut session =
             Session::open(&arguments.source, FetchOptions::default(), &mut |_| {}).map_err(Failure::new)?;
         session.fetch_until(Goal::ALL, &mut |_| {}).map_err(Failure::new)?;
-        let scene = session.scene_at(1.0);
+        let scene = match view(arguments, &session.manifest().scene) {
+            Some(view) => session.scene_for(&view),
+            None => session.scene_at(1.0),
+        };
         let encoding = session.grid_header().map(|header| header.encoding);
         return packed(arguments, scene, session.grid().zip(encoding));
     }
     if path.is_dir() || path.join("scene.glb").is_file() {
         let mut local = LocalScene::open(path, SceneLimits::default()).map_err(Failure::new)?;
-        let scene = local.scene_at(1.0);
+        let scene = match view(arguments, &local.manifest().scene) {
+            Some(view) => local.scene_for(&view),
+            None => local.scene_at(1.0),
+        };
         let encoding = local.grid_header().map(|header| header.encoding);
         return packed(arguments, scene, local.grid().zip(encoding));
+    }
+    if arguments.pixel_error.is_some() {
+        return Err(Failure::usage(
+            "--pixel-error is for packed scenes; a scene file has one level of each mesh",
+        ));
     }
     let loaded = LoadedScene::load(path, arguments.lights.as_deref())?;
     if !wants_grid {
@@ -115,7 +127,7 @@ fn planned(loaded: &LoadedScene) -> EffectPlan {
 /// A packed scene: complete, with the grid that was packed with it.
 fn packed(
     arguments: &RenderArguments,
-    scene: ivg_scene::Scene,
+    scene: Scene,
     grid: Option<(&IrradianceGrid, Encoding)>,
 ) -> Result<Source, Failure> {
     if arguments.lights.is_some() || arguments.ivg.is_some() {
@@ -128,7 +140,13 @@ fn packed(
     Ok(Source { loaded, plan, grid })
 }
 
-fn camera(arguments: &RenderArguments, loaded: &LoadedScene) -> Camera {
+/// What the picture asks of the meshes, if it may take coarser levels.
+fn view(arguments: &RenderArguments, scene: &Scene) -> Option<View> {
+    let pixels = arguments.pixel_error?;
+    Some(View { camera: camera(arguments, scene), height: arguments.size.height, pixels })
+}
+
+fn camera(arguments: &RenderArguments, scene: &Scene) -> Camera {
     match arguments.camera {
         Some(eye_and_target) => Camera {
             eye: eye_and_target.0,
@@ -136,7 +154,7 @@ fn camera(arguments: &RenderArguments, loaded: &LoadedScene) -> Camera {
             up: DVec3::Y,
             vertical_fov: COMMAND_LINE_FOV,
         },
-        None => loaded.scene.camera_or_framed(),
+        None => scene.camera_or_framed(),
     }
 }
 

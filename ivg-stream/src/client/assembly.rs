@@ -11,6 +11,7 @@ use super::download::{Contents, Download};
 use super::options::SceneLimits;
 use crate::extensions::FileEntry;
 use crate::manifest::Manifest;
+use crate::view::View;
 
 /// What is known of a scene.
 #[derive(Debug)]
@@ -110,6 +111,18 @@ impl Assembly {
         for (entry, &file) in self.manifest.meshes.iter().zip(&self.mesh_files) {
             if let Some(replay) = self.meshes[file].contents.replay_mut() {
                 entry.put_level(replay, share, &mut scene);
+            }
+        }
+        scene
+    }
+
+    pub(crate) fn scene_for(&mut self, view: &View) -> Scene {
+        let mut scene = self.manifest.scene.clone();
+        for (entry, &file) in self.manifest.meshes.iter().zip(&self.mesh_files) {
+            if let Some(replay) = self.meshes[file].contents.replay_mut() {
+                let error = view.error_of(entry, replay.header(), &self.manifest.scene);
+                let level = replay.level_of_error(error).unwrap_or_default();
+                entry.put(replay, level, &mut scene);
             }
         }
         scene

@@ -13,6 +13,7 @@ use super::options::{EventKind, FetchOptions, Goal, Observer, Progress};
 use super::schedule::{Kind, Scheduler};
 use super::url::SceneUrl;
 use crate::manifest::Manifest;
+use crate::view::View;
 
 /// A scene directory on its way in.
 ///
@@ -159,6 +160,13 @@ impl Session {
     #[must_use]
     pub fn scene_at(&mut self, share: f64) -> Scene {
         self.assembly.scene_at(share)
+    }
+
+    /// The scene with each mesh at its coarsest level that is exact enough for a picture, by the errors stored in its file, or
+    /// the highest level that has arrived if that is coarser; meshes of which nothing has arrived as in `scene.glb`.
+    #[must_use]
+    pub fn scene_for(&mut self, view: &View) -> Scene {
+        self.assembly.scene_for(view)
     }
 
     /// How far the session has come.
