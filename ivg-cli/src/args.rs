@@ -12,7 +12,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 pub(crate) use self::grid::{
     BakeSettings, EstimatorArgument, FilterArgument, RecodeArguments, ReconstructionArgument, SampleArguments,
 };
-pub(crate) use self::mesh::{ExtractArguments, MeshArguments, StorageArguments};
+pub(crate) use self::mesh::{ExtractArguments, MeshArguments, SCENE_POSITIONS, StorageArguments};
 use crate::scene_args::{Bounds, GridSize, PictureSize, ScheduleArgument};
 
 /// Streams lit 3D scenes: bakes indirect light into an irradiance vector grid, orders meshes coarse-to-fine, serves both,

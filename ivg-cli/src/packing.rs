@@ -6,8 +6,8 @@ use std::time::Instant;
 use ivg_scene::Scene;
 use ivg_stream::{PackInput, PackOptions, PackReport};
 use pmesh_build::BuildOptions;
-use pmesh_format::EncodeOptions;
 
+use crate::args::{SCENE_POSITIONS, StorageArguments};
 use crate::convert;
 use crate::failure::Failure;
 use crate::progress::FractionBar;
@@ -30,7 +30,7 @@ pub(crate) struct Meshes {
 pub(crate) fn order_meshes(
     scene: &Scene,
     coarse_vertices: u32,
-    options: &EncodeOptions,
+    storage: &StorageArguments,
 ) -> Result<Meshes, Failure> {
     let start = Instant::now();
     let mut meshes = Meshes { files: Vec::new(), plain_bytes: 0, vertices: 0, seconds: 0.0 };
@@ -49,7 +49,8 @@ pub(crate) fn order_meshes(
                 |error: &dyn std::fmt::Display| Failure::new(format_args!("mesh \"{}\": {error}", mesh.name));
             let (progressive, _) = pmesh_build::build(&indexed, &BuildOptions::default(), &mut progress)
                 .map_err(|error| named(&error))?;
-            let file = pmesh_format::encode(&progressive, options).map_err(|error| named(&error))?;
+            let options = storage.options(SCENE_POSITIONS, &progressive).map_err(|what| named(&what))?;
+            let file = pmesh_format::encode(&progressive, &options).map_err(|error| named(&error))?;
             meshes.plain_bytes += convert::plain_bytes(&progressive.full());
             meshes.vertices += progressive.positions.len() as u64;
             meshes.files.push(Some(file));

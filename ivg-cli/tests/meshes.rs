@@ -235,3 +235,41 @@ fn a_picture_takes_levels_as_coarse_as_its_pixels_allow() {
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("packed scenes"), "{}", text(&output.stderr));
 }
+
+#[test]
+fn a_mesh_is_coded_unless_it_has_attributes() {
+    let place = Workplace::new();
+    place.write("cube.obj", cube().as_bytes());
+    place.write("sheet.obj", sheet(30).as_bytes());
+    let report = |mesh: &str, options: &[&str]| {
+        let out = format!("{mesh}.pmesh");
+        let report =
+            json(&place.ok(&[&["mesh", &format!("{mesh}.obj"), "-o", &out, "--json"], options].concat()));
+        place.ok(&["check", &out]);
+        report
+    };
+    let said = |report: &Value| (report["mode"].clone(), report["positions"].clone());
+    let coded = report("sheet", &[]);
+    assert_eq!(said(&coded), ("coded".into(), "q14".into()));
+    // 29 m wide in 2^14 - 1 steps.
+    let error = coded["position_error_m"].as_f64().expect("a number");
+    assert!((error - 29.0 / 16383.0 / 2.0).abs() < 1e-9, "{error}");
+    let raw = report("sheet", &["--mode", "raw", "--positions", "f32"]);
+    assert!(2 * coded["bytes"].as_u64().unwrap() < raw["bytes"].as_u64().unwrap(), "{coded} {raw}");
+    assert_eq!(said(&report("cube", &[])), ("raw".into(), "q14".into()));
+    let output = place.run(&["mesh", "cube.obj", "-o", "bad.pmesh", "--mode", "coded"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("--mode raw"), "{}", text(&output.stderr));
+    assert!(!place.path().join("bad.pmesh").exists());
+
+    // Exact positions come back as they were, whichever way they were stored.
+    let exact = |mode: &str| {
+        report("sheet", &["--mode", mode, "--positions", "f32"]);
+        place.ok(&["extract", "sheet.pmesh", "-o", "out.obj"]);
+        let obj = text(&place.read("out.obj"));
+        let mut lines: Vec<String> = obj.lines().filter(|l| l.starts_with("v ")).map(String::from).collect();
+        lines.sort();
+        lines
+    };
+    assert_eq!(exact("coded"), exact("raw"));
+}

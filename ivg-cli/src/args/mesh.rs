@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use pmesh_build::Cost;
-use pmesh_format::{EncodeOptions, Mode, PacketSize, Positions};
+use pmesh_format::{EncodeOptions, Mode, PacketSize, Positions, ProgressiveMesh, Wedges};
 
 use super::registry;
 
@@ -35,33 +35,77 @@ pub(crate) struct MeshArguments {
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct StorageArguments {
     /// How positions are stored; with qN each coordinate is off by at most half a step, of which there are 2^N - 1 along the
-    /// longest side of the mesh.
-    #[arg(long, default_value = "f32", value_parser = registry::positions())]
-    pub(crate) positions: Positions,
-    /// How packets are stored.
-    #[arg(long, default_value = "raw", value_parser = registry::mode())]
-    pub(crate) mode: Mode,
+    /// longest side of the mesh [default: q14 for a mesh, q16 in a scene].
+    #[arg(long, value_parser = registry::positions())]
+    pub(crate) positions: Option<Positions>,
+    /// How packets are stored [default: coded; raw for a mesh with normals, texture coordinates, colours or several materials,
+    /// for which there is no coded mode yet].
+    #[arg(long, value_parser = registry::mode())]
+    pub(crate) mode: Option<Mode>,
     /// Bits of each of the two components of a normal, 4 to 16; coded mode only, raw mode stores them exactly.
-    #[arg(long, value_name = "BITS", default_value_t = 10, value_parser = clap::value_parser!(u8).range(4..=16))]
+    #[arg(long, value_name = "BITS", default_value_t = Self::DEFAULT.normal_bits, value_parser = clap::value_parser!(u8).range(4..=16))]
     pub(crate) normal_bits: u8,
     /// Bits of each texture coordinate between the least and the greatest of the mesh, 4 to 16; coded mode only, raw mode stores
     /// them exactly.
-    #[arg(long, value_name = "BITS", default_value_t = 12, value_parser = clap::value_parser!(u8).range(4..=16))]
+    #[arg(long, value_name = "BITS", default_value_t = Self::DEFAULT.uv_bits, value_parser = clap::value_parser!(u8).range(4..=16))]
     pub(crate) uv_bits: u8,
 }
 
+/// Positions of a mesh unless others are asked for: half a step is 0.003 % of the longest side.
+pub(crate) const MESH_POSITIONS: Positions = Positions::Quantised(14);
+
+/// Positions of the meshes of a scene unless others are asked for: half a step is 0.0008 % of the longest side, less than a
+/// pixel of a picture 65,000 pixels wide.
+pub(crate) const SCENE_POSITIONS: Positions = Positions::Quantised(16);
+
 impl StorageArguments {
-    /// The encoder's options.
-    pub(crate) fn options(&self) -> EncodeOptions {
+    /// Nothing asked for.
+    pub(crate) const DEFAULT: Self = Self { positions: None, mode: None, normal_bits: 10, uv_bits: 12 };
+
+    /// The encoder's options for a mesh.
+    ///
+    /// # Errors
+    ///
+    /// A mesh with attributes is to be coded.
+    pub(crate) fn options(
+        &self,
+        default: Positions,
+        mesh: &ProgressiveMesh,
+    ) -> Result<EncodeOptions, &'static str> {
         let Self { positions, mode, normal_bits, uv_bits } = *self;
-        EncodeOptions { positions, mode, normal_bits, uv_bits, ..EncodeOptions::default() }
+        let mode = match (mode, has_attributes(mesh)) {
+            (Some(Mode::Coded), true) => {
+                return Err(
+                    "there is no coded mode yet for normals, texture coordinates, colours and several materials; \
+                            leave --mode away or use --mode raw",
+                );
+            }
+            (Some(mode), _) => mode,
+            (None, true) => Mode::Raw,
+            (None, false) => Mode::Coded,
+        };
+        let positions = positions.unwrap_or(default);
+        Ok(EncodeOptions { positions, mode, normal_bits, uv_bits, ..EncodeOptions::default() })
     }
+}
+
+/// Whether a mesh has more than positions and faces.
+fn has_attributes(mesh: &ProgressiveMesh) -> bool {
+    let Wedges { vertices, normals, uvs, colours } = &mesh.wedges;
+    let on_wedges = !(normals.is_empty() && uvs.is_empty() && colours.is_empty());
+    on_wedges
+        || vertices.len() != mesh.positions.len()
+        || mesh.materials.iter().any(|&material| material != 0)
 }
 
 impl MeshArguments {
     /// The encoder's options.
-    pub(crate) fn options(&self) -> EncodeOptions {
-        let options = self.storage.options();
+    ///
+    /// # Errors
+    ///
+    /// As [`StorageArguments::options`].
+    pub(crate) fn options(&self, mesh: &ProgressiveMesh) -> Result<EncodeOptions, &'static str> {
+        let options = self.storage.options(MESH_POSITIONS, mesh)?;
         let packets = match (self.packet, self.growth, options.packets) {
             (Some(vertices), ..) => PacketSize::Fixed(vertices),
             (None, Some(percent), PacketSize::Growing { first, most, .. }) => {
@@ -69,7 +113,7 @@ impl MeshArguments {
             }
             (None, _, packets) => packets,
         };
-        EncodeOptions { packets, ..options }
+        Ok(EncodeOptions { packets, ..options })
     }
 }
 

@@ -14,9 +14,8 @@ use ivg_render::{Image, RenderOptions, RenderScene};
 use ivg_scene::{Camera, EffectPlan};
 use ivg_stream::blocking::{Server, Session};
 use ivg_stream::{FetchOptions, Goal, Progress, ServerOptions};
-use pmesh_format::EncodeOptions;
 
-use crate::args::{BakeSettings, DemoArguments, EstimatorArgument};
+use crate::args::{BakeSettings, DemoArguments, EstimatorArgument, StorageArguments};
 use crate::baking::{self, LoadedScene};
 use crate::failure::Failure;
 use crate::packing::{self, Meshes};
@@ -73,7 +72,7 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<ExitCode, Failure> {
     progress::say(&format!("{}: {} triangles", loaded.scene.name, loaded.flat.triangles.len()));
     let baked = baking::bake(&loaded, &settings(arguments))?;
     progress::say(&format!("baked {} photons in {:.1} s", baked.stats.photons, baked.elapsed.as_secs_f64()));
-    let meshes = packing::order_meshes(&loaded.scene, COARSE_VERTICES, &EncodeOptions::default())?;
+    let meshes = packing::order_meshes(&loaded.scene, COARSE_VERTICES, &StorageArguments::DEFAULT)?;
     progress::say(&format!("ordered {} vertices in {:.1} s", meshes.vertices, meshes.seconds));
     let directory = out.join("scene");
     let packed = packing::pack(&loaded.scene, &meshes, &baked.file, &directory, COARSE_VERTICES)?;

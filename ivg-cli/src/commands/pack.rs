@@ -10,8 +10,7 @@ use crate::{files, packing, table};
 pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
     let loaded = LoadedScene::open(&arguments.scene)?;
     let baked = baking::bake(&loaded, &arguments.bake)?;
-    let meshes =
-        packing::order_meshes(&loaded.scene, arguments.coarse_vertices, &arguments.storage.options())?;
+    let meshes = packing::order_meshes(&loaded.scene, arguments.coarse_vertices, &arguments.storage)?;
     let directory = &arguments.out;
     let report = packing::pack(&loaded.scene, &meshes, &baked.file, directory, arguments.coarse_vertices)?;
     if arguments.json {
@@ -23,8 +22,6 @@ pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
             "directory": directory,
             "scene_bytes": report.scene_bytes,
             "files": files,
-            "mode": arguments.storage.mode.name(),
-            "positions": arguments.storage.positions.name(),
             "plain_mesh_bytes": meshes.plain_bytes,
             "seconds": { "bake": baked.elapsed.as_secs_f64(), "order": meshes.seconds },
         });
