@@ -34,10 +34,10 @@ use models::Binary;
 /// What is wrong with a payload, and at which byte of it.
 pub(crate) type Fault = (Code, usize);
 
-/// Slots that are looked at for each byte of a payload, at most (PMESH-COD-11).
+/// Slots that are looked at for each byte of a payload, at most (PMESH-COD-12).
 const SLOTS_A_BYTE: u64 = 64;
 
-/// The least payload of a coded packet that brings so many vertices and faces after so many vertices (PMESH-COD-11).
+/// The least payload of a coded packet that brings so many vertices and faces after so many vertices (PMESH-COD-12).
 pub(crate) fn least_bytes(start: u32, vertices: u32, faces: u32) -> u64 {
     4 + (u64::from(vertices) + u64::from(faces)) / 4 + u64::from(start) / 64
 }

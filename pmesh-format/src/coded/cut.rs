@@ -1,4 +1,4 @@
-//! Which faces of the parent switch to the new vertex, where they go round and it takes a run of them (PMESH-COD-07).
+//! Which faces of the parent switch to the new vertex, where they go round and it takes a run of them (PMESH-COD-09).
 
 use super::geometry::logarithm;
 use super::models::Binary;

@@ -1,4 +1,4 @@
-//! Where the next vertex is, in whole numbers: predictions, and how far from them (PMESH-COD-08 to -10).
+//! Where the next vertex is, in whole numbers: predictions, and how far from them (PMESH-COD-10).
 
 use super::models::Symbols;
 use super::priors::{HEIGHTS, SPREADS};

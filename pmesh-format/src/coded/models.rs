@@ -1,4 +1,4 @@
-//! Adaptive models: how probable each value is, learnt from those before (PMESH-COD-03).
+//! Adaptive models: how probable each value is, learnt from those before (PMESH-COD-04).
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::arithmetic_side_effects))]
 
 /// Bits of a probability.

@@ -1,4 +1,4 @@
-//! First states of the models of residuals (spec/tables/pmesh.toml).
+//! First states of the models of residuals (PMESH-COD-10).
 
 use super::geometry::CONTEXTS;
 

@@ -1,4 +1,4 @@
-//! The faces around a vertex in their order (PMESH-COD-06).
+//! The faces around a vertex in their order (PMESH-COD-08).
 
 /// The most faces that are put in order.
 pub(super) const MOST: usize = 32;

@@ -236,5 +236,5 @@ fn the_coder_writes_the_bytes_of_the_specification() {
     assert_eq!(writer.finish(), PINNED);
 }
 
-/// Test values of PMESH-COD-02 and -03.
+/// Test values of PMESH-COD-04.
 const PINNED: &[u8] = &[112, 188, 10, 4, 243, 126];

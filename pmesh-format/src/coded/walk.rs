@@ -1,4 +1,4 @@
-//! The walk that writer and reader take together (PMESH-COD-04 to -11).
+//! The walk that writer and reader take together (PMESH-COD-06 to -12).
 
 use alloc::vec::Vec;
 
@@ -270,6 +270,9 @@ impl State {
                 run = Some(self.models.cuts.code(coder, &lengths[..count], given));
             }
         }
+        if run.is_some() && self.corners.len() + 2 > extent.faces.end as usize {
+            return Err((codes::CODED_FACES, 0));
+        }
         let mut inner = 0u64;
         let mut chosen = Vec::new();
         let mut sides = Sides { thirds: [Vec::new(), Vec::new()] };
@@ -336,7 +339,10 @@ impl State {
                     let third = self.code_third(coder, spokes, guess, third, vertex, parent)?;
                     sides.thirds[side].push(third);
                     let new = sides.thirds.iter().map(Vec::len).sum::<usize>();
-                    if self.corners.len() + new > extent.faces.end as usize || coder.failed() {
+                    if coder.failed() {
+                        return Err(LENGTH);
+                    }
+                    if self.corners.len() + new > extent.faces.end as usize {
                         return Err((codes::CODED_FACES, 0));
                     }
                 }
@@ -352,9 +358,6 @@ impl State {
             changes.positions.push(position.ok_or((codes::POSITION, 0))?);
         }
         if let Some(ends) = ends {
-            if self.corners.len() + 2 > extent.faces.end as usize {
-                return Err((codes::CODED_FACES, 0));
-            }
             changes.switches.extend((0..count).map(|k| moved >> k & 1 == 1));
             sides.thirds = ends.map(|third| alloc::vec![third]);
         } else {
