@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::attributes::Deviations;
 use crate::options::Cost;
 use crate::quadric::Quadric;
 use crate::rules::twice_area;
@@ -18,18 +19,24 @@ const LENGTH_WEIGHT: f64 = 1e-7;
 
 /// The costs of all collapses, kept up to date while vertices go.
 #[derive(Debug)]
-pub(crate) struct Costs {
+pub(crate) struct Costs<'a> {
     kind: Cost,
     /// Area of the whole surface \[m²\].
     total_area: f64,
     quadrics: Vec<Quadric>,
-    /// Each vertex's quadric at its own position.
+    /// Each vertex's quadric at its own position, with the deviation of its attributes.
     own: Vec<f64>,
+    deviations: Option<Deviations<'a>>,
 }
 
-impl Costs {
+impl<'a> Costs<'a> {
     /// For the uncollapsed surface.
-    pub(crate) fn new(kind: Cost, surface: &Surface, ring: &mut Ring) -> Self {
+    pub(crate) fn new(
+        kind: Cost,
+        surface: &Surface,
+        deviations: Option<Deviations<'a>>,
+        ring: &mut Ring,
+    ) -> Self {
         let mut quadrics = vec![Quadric::default(); surface.positions.len()];
         let mut total_area = 0.0;
         for f in 0..surface.faces.len() {
@@ -62,8 +69,11 @@ impl Costs {
                 }
             }
         }
-        let own = quadrics.iter().zip(&surface.positions).map(|(q, &p)| q.at(p)).collect();
-        Self { kind, total_area, quadrics, own }
+        let mut costs = Self { kind, total_area, own: vec![0.0; quadrics.len()], quadrics, deviations };
+        for v in 0..crate::input::index(surface.positions.len()) {
+            costs.own[v as usize] = costs.standing(surface, v);
+        }
+        costs
     }
 
     /// What moving `u` onto its neighbour `v` costs.
@@ -79,7 +89,7 @@ impl Costs {
                 let moving = &self.quadrics[u as usize];
                 let area = moving.area();
                 let length = LENGTH_WEIGHT * area * from.distance_squared(to);
-                let growth = (moving.at(to) + self.own[v as usize] - self.own[u as usize]).max(0.0) + length;
+                let growth = (self.sum(surface, u, v) - self.own[u as usize]).max(0.0) + length;
                 // A share of the whole, so that the cost orders the same way at any scale.
                 if area > 0.0 { growth / (area / self.total_area).sqrt().sqrt() } else { growth }
             }
@@ -88,24 +98,38 @@ impl Costs {
     }
 
     /// How far the surface moves, estimated \[m\]: for quadrics the root of the mean over the area of
-    /// the squared distances of `v` to the planes that it stands for; for Melax's cost the cost itself, which is a length.
+    /// the squared distances of `v` to the planes that it stands for, and of weighted deviations of attributes; for Melax's cost the cost itself, which is a length.
     pub(crate) fn distance(&self, surface: &Surface, u: u32, v: u32) -> f64 {
         match self.kind {
             Cost::Quadric => {
                 let (moving, staying) = (&self.quadrics[u as usize], &self.quadrics[v as usize]);
                 let area = moving.area() + staying.area();
-                let sum = moving.at(surface.positions[v as usize]) + self.own[v as usize];
-                if area > 0.0 { (sum / area).sqrt() } else { 0.0 }
+                if area > 0.0 { (self.sum(surface, u, v) / area).sqrt() } else { 0.0 }
             }
             Cost::Melax => self.of(surface, u, v),
         }
     }
 
-    /// Tells that `u` has moved onto `v`.
-    pub(crate) fn collapsed(&mut self, surface: &Surface, u: u32, v: u32) {
+    /// The squared distances and deviations of what `u` and `v` stand for once `u` has moved onto `v`.
+    fn sum(&self, surface: &Surface, u: u32, v: u32) -> f64 {
+        let deviation = self.deviations.as_ref().map_or(0.0, |d| d.moved(surface, u, v));
+        self.quadrics[u as usize].at(surface.positions[v as usize]) + deviation + self.own[v as usize]
+    }
+
+    /// The squared distances and deviations of what `v` stands for.
+    fn standing(&self, surface: &Surface, v: u32) -> f64 {
+        let deviation = self.deviations.as_ref().map_or(0.0, |d| d.own(surface, v));
+        self.quadrics[v as usize].at(surface.positions[v as usize]) + deviation
+    }
+
+    /// Tells that `u` has moved onto `v` and its wedges have become `targets`.
+    pub(crate) fn collapsed(&mut self, surface: &Surface, u: u32, v: u32, targets: &[u32]) {
         let moved = self.quadrics[u as usize];
         self.quadrics[v as usize].add(&moved);
-        self.own[v as usize] = self.quadrics[v as usize].at(surface.positions[v as usize]);
+        if let Some(deviations) = &mut self.deviations {
+            deviations.collapsed(u, targets);
+        }
+        self.own[v as usize] = self.standing(surface, v);
     }
 }
 

@@ -23,6 +23,14 @@ pub enum BuildError {
         /// Which attribute.
         attribute: &'static str,
     },
+    /// A weight of attributes is negative, NaN or infinite.
+    #[error("the weight of {attribute} is {weight}, but must be a finite number of metres, 0 or more")]
+    AttributeWeight {
+        /// Which attribute.
+        attribute: &'static str,
+        /// The weight, as written.
+        weight: String,
+    },
     /// A triangle names a wedge that is not there.
     #[error("triangle {triangle} names wedge {index}, but there are only {wedges}")]
     CornerOutOfRange {

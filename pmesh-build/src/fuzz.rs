@@ -2,7 +2,7 @@
 
 use pmesh_format::{IndexedMesh, Wedges, check_level};
 
-use crate::{BuildOptions, Cost, build};
+use crate::{AttributeWeights, BuildOptions, Cost, build};
 
 /// Builds a progressive mesh from arbitrary bytes and checks that the tables are valid and every level is a valid mesh.
 ///
@@ -37,6 +37,10 @@ pub fn fuzz_mesh_build(data: &[u8]) {
     let options = BuildOptions {
         weld: choices & 4 != 0,
         cost: if choices & 8 != 0 { Cost::Melax } else { Cost::Quadric },
+        attributes: AttributeWeights {
+            uv: if choices & 16 != 0 { 1.0 } else { 0.0 },
+            ..AttributeWeights::default()
+        },
     };
     let Ok((progressive, report)) = build(&mesh, &options, &mut |_| {}) else { return };
     assert_eq!(report.base_vertices, if report.faces == 0 { 0 } else { 3 });

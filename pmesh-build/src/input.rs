@@ -13,6 +13,14 @@ pub(crate) fn clean(
     report: &mut BuildReport,
 ) -> Result<IndexedMesh, BuildError> {
     check(mesh)?;
+    let weights = &options.attributes;
+    for (attribute, weight) in
+        [("normals", weights.normal), ("texture coordinates", weights.uv), ("colours", weights.colour)]
+    {
+        if !(weight.is_finite() && weight >= 0.0) {
+            return Err(BuildError::AttributeWeight { attribute, weight: weight.to_string() });
+        }
+    }
     report.input_vertices = mesh.positions.len();
     report.input_triangles = mesh.triangles.len();
 

@@ -28,6 +28,7 @@
 //! `fuzz`: the body of a fuzz target as a plain function.
 #![forbid(unsafe_code)]
 
+mod attributes;
 mod cost;
 mod error;
 #[cfg(feature = "fuzz")]
@@ -47,5 +48,5 @@ mod tests;
 pub use error::BuildError;
 #[cfg(feature = "fuzz")]
 pub use fuzz::fuzz_mesh_build;
-pub use options::{BuildOptions, BuildReport, Cost};
+pub use options::{AttributeWeights, BuildOptions, BuildReport, Cost};
 pub use output::build;

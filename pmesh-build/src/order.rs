@@ -2,9 +2,10 @@
 
 use pmesh_format::Wedges;
 
+use crate::attributes::Deviations;
 use crate::cost::Costs;
 use crate::input::index;
-use crate::options::{BuildReport, Cost};
+use crate::options::{BuildOptions, BuildReport};
 use crate::pairing::pair;
 use crate::queue::{Candidate, Queue};
 use crate::rules::{Rules, allowed};
@@ -45,13 +46,12 @@ pub(crate) struct Order {
 pub(crate) fn find(
     surface: Surface,
     wedges: &Wedges,
-    cost: Cost,
+    options: &BuildOptions,
     report: &mut BuildReport,
     progress: &mut dyn FnMut(f32),
 ) -> Order {
     let vertices = surface.positions.len();
     let mut ring = Ring::new(vertices);
-    let costs = Costs::new(cost, &surface, &mut ring);
     let mut first_wedge = vec![0; vertices + 1];
     for &v in &wedges.vertices {
         first_wedge[v as usize + 1] += 1;
@@ -59,6 +59,8 @@ pub(crate) fn find(
     for v in 0..vertices {
         first_wedge[v + 1] += first_wedge[v];
     }
+    let deviations = Deviations::new(&surface, wedges, &first_wedge, &options.attributes);
+    let costs = Costs::new(options.cost, &surface, deviations, &mut ring);
     let mut run = Run {
         costs,
         other: Ring::new(vertices),
@@ -89,7 +91,7 @@ pub(crate) fn find(
 struct Run<'a> {
     surface: Surface,
     wedges: &'a Wedges,
-    costs: Costs,
+    costs: Costs<'a>,
     ring: Ring,
     other: Ring,
     queue: Queue,
@@ -225,7 +227,8 @@ impl Run<'_> {
         beside.extend(self.ring.edges.iter().map(|e| e.to));
         let targets = &self.order.wedge_targets;
         self.surface.collapse(u, v, |w| targets[w as usize]);
-        self.costs.collapsed(&self.surface, u, v);
+        let wedges = self.first_wedge[u as usize] as usize..self.first_wedge[u as usize + 1] as usize;
+        self.costs.collapsed(&self.surface, u, v, &targets[wedges]);
         beside.sort_unstable();
         for &x in &beside {
             if self.surface.around(x).is_empty() {

@@ -37,7 +37,7 @@ pub fn build(
     report.wedges = mesh.wedges.len();
     report.faces = mesh.triangles.len();
     progress(0.0);
-    let order = find(surface, &mesh.wedges, options.cost, &mut report, progress);
+    let order = find(surface, &mesh.wedges, options, &mut report, progress);
     report.base_vertices = report.vertices - order.collapses.len();
     let result = arrange(mesh, &order);
     let base = result.base_vertices;

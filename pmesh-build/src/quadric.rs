@@ -23,7 +23,11 @@ impl Quadric {
     /// Adds the plane through `point` with unit normal `n`, weighted; `area` is how much of the weight is surface
     /// (constraint planes stand for none).
     pub(crate) fn add_plane(&mut self, n: DVec3, point: DVec3, weight: f64, area: f64) {
-        let d = -n.dot(point);
+        self.add_linear(n, -n.dot(point), weight, area);
+    }
+
+    /// Adds the weighted square of the linear function `n` · p + `d`.
+    pub(crate) fn add_linear(&mut self, n: DVec3, d: f64, weight: f64, area: f64) {
         let m = n * weight;
         self.xx += m.x * n.x;
         self.xy += m.x * n.y;

@@ -6,6 +6,7 @@ use pmesh_format::{
 
 use crate::{BuildError, BuildOptions, BuildReport, Cost, build};
 
+mod attributes;
 mod cases;
 mod seams;
 mod shapes;

@@ -4,7 +4,7 @@ use super::shapes::grid;
 use super::*;
 
 /// A grid whose left and right half have texture coordinates of their own (u < 1 and u > 2), and, if asked, materials.
-fn two_charts(side: u32, with_materials: bool) -> IndexedMesh {
+pub(super) fn two_charts(side: u32, with_materials: bool) -> IndexedMesh {
     let mut mesh = grid(side, |x, y| 0.05 * (6.0 * x).sin() * (5.0 * y).cos());
     let middle = (side - 1) / 2;
     let (mut vertices, mut uvs) = (Vec::new(), Vec::new());
