@@ -1,6 +1,6 @@
 use ivg_format::{EncodeOptions, Encoding, GridSource, Lattice, Order};
 use ivg_grid::{FillOptions, IrradianceGrid, fill};
-use pmesh_format::{IndexedMesh, ProgressiveMesh};
+use pmesh_format::{IndexedMesh, Mode, ProgressiveMesh};
 use quickcheck::quickcheck;
 
 use super::*;
@@ -44,6 +44,15 @@ fn explicit_file() -> Vec<u8> {
 
 /// A fan whose last vertex always collapses onto the one before it.
 fn mesh_file() -> Vec<u8> {
+    mesh_file_as(Mode::Raw)
+}
+
+/// The same, entropy coded.
+fn coded_mesh_file() -> Vec<u8> {
+    mesh_file_as(Mode::Coded)
+}
+
+fn mesh_file_as(mode: Mode) -> Vec<u8> {
     let count = 400;
     let positions = (0..count).map(|v| [v as f32, (v * v) as f32, 0.0]).collect();
     let full = IndexedMesh::from_positions(positions, (2..count).map(|v| [0, v - 1, v]).collect());
@@ -57,7 +66,8 @@ fn mesh_file() -> Vec<u8> {
         faces: full.triangles,
         ..ProgressiveMesh::default()
     };
-    pmesh_format::encode(&mesh, &pmesh_format::EncodeOptions::default()).unwrap()
+    let options = pmesh_format::EncodeOptions { mode, ..pmesh_format::EncodeOptions::fixed(70) };
+    pmesh_format::encode(&mesh, &options).unwrap()
 }
 
 fn begin<C: Contents>(contents: C, file: &[u8]) -> Download<C> {
@@ -107,8 +117,8 @@ quickcheck! {
             && download.share() == 1.0
     }
 
-    fn a_mesh_cut_anywhere_is_the_mesh_of_the_file(cuts: Vec<usize>) -> bool {
-        let file = mesh_file();
+    fn a_mesh_cut_anywhere_is_the_mesh_of_the_file(cuts: Vec<usize>, coded: bool) -> bool {
+        let file = if coded { coded_mesh_file() } else { mesh_file() };
         let expected = read_mesh(&file, &SceneLimits::default()).unwrap().mesh();
         let mut download = begin(MeshContents::new(1000), &file);
         arrives(&mut download, &file, &cuts)
@@ -151,6 +161,7 @@ fn parts_count_once_they_are_whole() {
     states_after_each_length(|| GridContents::new(1000), &grid_file());
     states_after_each_length(|| GridContents::new(1000), &explicit_file());
     states_after_each_length(|| MeshContents::new(1000), &mesh_file());
+    states_after_each_length(|| MeshContents::new(1000), &coded_mesh_file());
 }
 
 /// Every flipped byte is noticed by the end of its part, and right bytes then go on from there.
@@ -178,6 +189,7 @@ fn no_flipped_byte_gets_through() {
     flips_are_noticed(|| GridContents::new(1000), &grid_file());
     flips_are_noticed(|| GridContents::new(1000), &explicit_file());
     flips_are_noticed(|| MeshContents::new(1000), &mesh_file());
+    flips_are_noticed(|| MeshContents::new(1000), &coded_mesh_file());
 }
 
 #[test]
