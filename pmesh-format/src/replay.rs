@@ -27,6 +27,7 @@ mod levels;
 mod load;
 mod touched;
 mod walk;
+mod whole;
 
 use touched::Touched;
 
