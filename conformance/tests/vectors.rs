@@ -105,7 +105,7 @@ fn every_prefix_of_every_accepted_vector_needs_more() {
 fn prefix_tables_say_how_much_is_known_after_every_byte() {
     let vectors = vectors();
     let tables: Vec<_> = vectors.iter().filter_map(|vector| Some((vector, prefix_rows(vector)?))).collect();
-    assert_eq!(tables.len(), 4);
+    assert_eq!(tables.len(), 5);
     for (vector, rows) in tables {
         let mut next = 0;
         for row in rows {
@@ -192,6 +192,10 @@ fn accepted_meshes_have_hashes_of_their_levels() {
         else {
             panic!("{}: no header", vector.file())
         };
+        if header.mode != pmesh_format::Mode::Raw {
+            // The second reader does not read it; round trips compare its levels with those of the mesh.
+            continue;
+        }
         let mut reference = conformance::reference::Reference::new(&header);
         for k in 0..header.packet_count() {
             let range = header.packet_range(k);

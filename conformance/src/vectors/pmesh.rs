@@ -6,6 +6,8 @@ use pmesh_format::{EncodeOptions, Header, Limits, ProgressiveMesh, Step, Wedges,
 use std::ops::Range;
 
 mod refused;
+mod refused_coded;
+mod refused_frame;
 mod variants;
 
 /// Places of fields in the header (`spec/tables/pmesh.toml`).
@@ -49,7 +51,7 @@ const OCTAHEDRON: &str = "0003-octahedron";
 const ONE_PACKET: &str = "0004-one-packet";
 const SEAM: &str = "0005-seam";
 /// Vectors with a table of what is known after how many bytes.
-pub(super) const PREFIX_VECTORS: [&str; 2] = [OCTAHEDRON, "0011-raw-attributes"];
+pub(super) const PREFIX_VECTORS: [&str; 3] = [OCTAHEDRON, "0011-raw-attributes", "0035-coded-q14"];
 
 pub(super) fn vectors() -> Vec<Vector> {
     let mut vectors = accepted();

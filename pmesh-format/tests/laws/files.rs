@@ -117,12 +117,21 @@ pub(crate) fn file(mesh: &ProgressiveMesh, packet: u32) -> Vec<u8> {
 }
 
 /// How packets and positions are stored: every way that this crate writes.
-pub(crate) const STORED: &[(Mode, Positions)] =
-    &[(Mode::Raw, Positions::F32), (Mode::Raw, Positions::Quantised(12))];
+pub(crate) const STORED: &[(Mode, Positions)] = &[
+    (Mode::Raw, Positions::F32),
+    (Mode::Raw, Positions::Quantised(12)),
+    (Mode::Coded, Positions::F32),
+    (Mode::Coded, Positions::Quantised(14)),
+];
 
 /// A file that is stored in that way.
 pub(crate) fn stored(mesh: &ProgressiveMesh, packet: u32, (mode, positions): (Mode, Positions)) -> Vec<u8> {
     encode(mesh, &EncodeOptions { mode, positions, ..EncodeOptions::fixed(packet) }).unwrap()
+}
+
+/// Whether attributes and materials are written that way.
+pub(crate) fn attributes_too((mode, _): (Mode, Positions)) -> bool {
+    mode == Mode::Raw
 }
 
 /// Files of all kinds that this crate writes.
@@ -132,11 +141,14 @@ pub(crate) fn samples() -> Vec<Vec<u8>> {
 
 fn samples_stored(way: (Mode, Positions)) -> Vec<Vec<u8>> {
     let file = |mesh: &ProgressiveMesh, packet| stored(mesh, packet, way);
-    let mut files = vec![file(&ProgressiveMesh::default(), 1), file(&strip(), 1), file(&seam(), 3)];
+    let mut files = vec![file(&ProgressiveMesh::default(), 1), file(&strip(), 1)];
+    if attributes_too(way) {
+        files.push(file(&seam(), 3));
+    }
     for (seed, vertices, rich, packet) in
         [(1, 1, false, 1), (2, 12, false, 5), (3, 14, true, 4), (4, 20, true, 100)]
     {
-        files.push(file(&random(seed, vertices, rich), packet));
+        files.push(file(&random(seed, vertices, rich && attributes_too(way)), packet));
     }
     files
 }

@@ -3,7 +3,7 @@
 use super::super::{Format, Vector};
 use crate::surfaces::{Kind, surface};
 use ivg_wire::splitmix64;
-use pmesh_format::{EncodeOptions, Mode, PacketSize, Positions, ProgressiveMesh, encode};
+use pmesh_format::{EncodeOptions, Mode, PacketSize, Positions, ProgressiveMesh, Wedges, encode};
 
 /// Packets that grow as those of large meshes do, but begin small.
 const GROWING: PacketSize = PacketSize::Growing { first: 6, percent: 30, most: 100 };
@@ -67,6 +67,12 @@ fn raw() -> Vec<Variant> {
     ]
 }
 
+/// The mesh with these coordinates all the same.
+fn flat(mut mesh: ProgressiveMesh, axes: &[usize]) -> ProgressiveMesh {
+    mesh.positions.iter_mut().for_each(|p| axes.iter().for_each(|&axis| p[axis] = -3.25));
+    mesh
+}
+
 /// Names of the raw files of each number of bits, from the least on.
 const QUANTISED: [&str; 7] = [
     "0020-raw-q10",
@@ -84,10 +90,6 @@ fn raw_quantised() -> Vec<Variant> {
         .zip(QUANTISED)
         .map(|(bits, name)| (name, bordered(9), raw(bits), "positions on a lattice along the longest side"))
         .collect();
-    let flat = |mut mesh: ProgressiveMesh, axes: &[usize]| {
-        mesh.positions.iter_mut().for_each(|p| axes.iter().for_each(|&axis| p[axis] = -3.25));
-        mesh
-    };
     variants.extend([
         ("0027-raw-q12-plane", flat(closed(8), &[1]), raw(12), "a mesh without extent along one axis"),
         ("0028-raw-q12-point", flat(closed(5), &[0, 1, 2]), raw(12), "a mesh without extent: the step is 0"),
@@ -101,8 +103,129 @@ fn raw_quantised() -> Vec<Variant> {
     variants
 }
 
+/// Three sheets on one edge, two components that touch in a vertex, and a vertex that no face has.
+fn not_manifold() -> ProgressiveMesh {
+    ProgressiveMesh {
+        positions: vec![
+            [0.0; 3],
+            [0.0, 0.0, 1.0],
+            [1.0, 0.0, 0.5],
+            [-0.5, 0.875, 0.5],
+            [-0.5, -0.875, 0.5],
+            [0.25, 0.25, 2.0],
+            [-0.25, 0.25, 2.0],
+            [3.0, 3.0, 3.0],
+        ],
+        wedges: Wedges { vertices: (0..8).collect(), ..Wedges::default() },
+        base_vertices: 3,
+        collapse: vec![2, 2, 2, 5, 6],
+        wedge_collapse: vec![2, 2, 2, 5, 6],
+        errors: vec![1.0, 0.75, 0.5, 0.25, 0.125],
+        faces: vec![[0, 1, 2], [0, 1, 3], [0, 1, 4], [1, 5, 6]],
+        ..ProgressiveMesh::default()
+    }
+}
+
+/// All vertices but three collapse onto the first, round which the faces lie.
+fn hub(vertices: u32) -> ProgressiveMesh {
+    let splits = vertices as usize - 3;
+    ProgressiveMesh {
+        positions: (0..vertices).map(|v| if v == 1 { [1.0; 3] } else { [0.0; 3] }).collect(),
+        wedges: Wedges { vertices: (0..vertices).collect(), ..Wedges::default() },
+        base_vertices: 3,
+        collapse: vec![0; splits],
+        wedge_collapse: vec![0; splits],
+        errors: vec![0.5; splits],
+        faces: (2..vertices).map(|v| [0, v - 1, v]).collect(),
+        ..ProgressiveMesh::default()
+    }
+}
+
+/// Names of coded files of each encoding of positions.
+const CODED: [&str; 8] = [
+    "0030-coded-f32",
+    "0031-coded-q10",
+    "0032-coded-q11",
+    "0033-coded-q12",
+    "0034-coded-q13",
+    "0035-coded-q14",
+    "0036-coded-q15",
+    "0037-coded-q16",
+];
+
+fn coded() -> Vec<Variant> {
+    let coded = |positions, packets| options(Mode::Coded, positions, packets);
+    let mut variants: Vec<Variant> = CODED
+        .into_iter()
+        .zip(Positions::ALL)
+        .map(|(name, &positions)| {
+            (name, closed(40), coded(positions, GROWING), "a closed surface, entropy coded")
+        })
+        .collect();
+    let q12 = Positions::Quantised(12);
+    let triangle = || ProgressiveMesh { faces: vec![[0, 1, 2]], ..closed(3) };
+    let zeros = || {
+        let mut mesh = bordered(12);
+        mesh.positions[4] = [0.0, -0.0, f32::from_bits(1)];
+        mesh.positions[5] = [-f32::from_bits(1), 0.0, -0.0];
+        mesh
+    };
+    variants.extend([
+        ("0040-coded-empty", ProgressiveMesh::default(), coded(q12, GROWING), "no vertices: no packet"),
+        ("0041-coded-triangle", triangle(), coded(q12, GROWING), "one triangle: a base and nothing else"),
+        ("0042-coded-border", bordered(40), coded(q12, GROWING), "a surface with a border"),
+        (
+            "0043-coded-irregular",
+            ProgressiveMesh {
+                wedges: Wedges { normals: Vec::new(), ..irregular(40).wedges },
+                ..irregular(40)
+            },
+            coded(q12, GROWING),
+            "pinched vertices, faces across, vertices without a face",
+        ),
+        (
+            "0044-coded-not-manifold",
+            not_manifold(),
+            coded(q12, PacketSize::Fixed(3)),
+            "three sheets on one edge, two components in a vertex, a vertex alone",
+        ),
+        ("0045-coded-one-packet", closed(60), coded(q12, PacketSize::Fixed(60)), "one packet"),
+        (
+            "0046-coded-many-packets",
+            closed(24),
+            coded(q12, PacketSize::Fixed(1)),
+            "a packet for each vertex: models carry over",
+        ),
+        (
+            "0047-coded-f32-zeros",
+            zeros(),
+            coded(Positions::F32, GROWING),
+            "zeros of both signs, subnormal numbers",
+        ),
+        (
+            "0048-coded-point",
+            flat(closed(8), &[0, 1, 2]),
+            coded(q12, GROWING),
+            "a mesh without extent: all points are one",
+        ),
+        (
+            "0049-coded-f32-point",
+            flat(closed(8), &[0, 1, 2]),
+            coded(Positions::F32, GROWING),
+            "a mesh without extent, nothing lost",
+        ),
+        (
+            "0050-coded-hub",
+            hub(400),
+            coded(q12, PacketSize::Fixed(400)),
+            "a vertex with very many faces: the packet is as long as the work that it makes",
+        ),
+    ]);
+    variants
+}
+
 pub(super) fn accepted() -> Vec<Vector> {
-    let variants = raw().into_iter().chain(raw_quantised());
+    let variants = raw().into_iter().chain(raw_quantised()).chain(coded());
     variants
         .map(|(name, mesh, options, why)| {
             let file = encode(&mesh, &options).unwrap_or_else(|error| panic!("{name}: {error}"));
