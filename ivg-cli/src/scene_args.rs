@@ -113,6 +113,14 @@ pub(crate) fn share_or_all(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A finite number, zero or more.
+pub(crate) fn weight(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err(format!("'{text}' is not a number of zero or more")),
+    }
+}
+
 /// A finite number above zero.
 pub(crate) fn positive(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {

@@ -273,3 +273,34 @@ fn a_mesh_is_coded_unless_it_has_attributes() {
     };
     assert_eq!(exact("coded"), exact("raw"));
 }
+
+#[test]
+fn weights_of_attributes_count_in_the_stored_errors() {
+    let place = Workplace::new();
+    // A flat sheet whose texture bends along x: without a weight no collapse costs anything; with one the eight columns, two
+    // vertices each, do.
+    let mut obj = String::new();
+    for k in 0..64u32 {
+        let (x, y) = (k % 8, k / 8);
+        obj += &format!("v {x} {y} 0\nvt {} {}\n", f64::from(x * x) / 49.0, f64::from(y) / 7.0);
+    }
+    for k in 0..49 {
+        let a = k / 7 * 8 + k % 7 + 1;
+        let [a, b, c, d] = [a, a + 1, a + 9, a + 8].map(|v| format!("{v}/{v}"));
+        obj += &format!("f {a} {b} {c}\nf {a} {c} {d}\n");
+    }
+    place.write("flat.obj", obj.as_bytes());
+    let error = |weight: &str| {
+        place.ok(&["mesh", "flat.obj", "-o", "flat.pmesh", "--uv-weight", weight, "--packet", "10"]);
+        let report = json(&place.ok(&["info", "flat.pmesh", "--json"]));
+        let packets = report["parts"].as_array().expect("a list").iter();
+        let name =
+            packets.map(|part| part["part"].as_str().expect("a name")).find(|n| n.starts_with("packet 1:"));
+        let words: Vec<&str> = name.expect("a packet").split(' ').collect();
+        words[words.len() - 2].parse::<f64>().expect("an error in metres")
+    };
+    let (without, with) = (error("0"), error("1"));
+    assert!(with > 100.0 * without && with > 1e-4, "{without} and {with}");
+    let output = place.run(&["mesh", "flat.obj", "-o", "bad.pmesh", "--uv-weight", "-1"]);
+    assert_eq!(output.status.code(), Some(2));
+}

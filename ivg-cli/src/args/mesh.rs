@@ -20,6 +20,13 @@ pub(crate) struct MeshArguments {
     /// The cost that orders the collapses.
     #[arg(long, default_value = "quadric", value_parser = registry::cost())]
     pub(crate) cost: Cost,
+    /// How many metres of distance a unit of deviation of a normal is worth in the quadric cost and in the stored errors; 0
+    /// orders by the surface alone.
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = crate::scene_args::weight)]
+    pub(crate) normal_weight: f64,
+    /// The same for a texture coordinate, whose unit is the width of the image.
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = crate::scene_args::weight)]
+    pub(crate) uv_weight: f64,
     /// Vertices a packet, the same in each.
     #[arg(long, value_name = "N", value_parser = crate::scene_args::count::<u32>, conflicts_with = "growth")]
     pub(crate) packet: Option<u32>,

@@ -3,7 +3,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use ivg_scene::import::{self, ImportOptions};
-use pmesh_build::{BuildOptions, BuildReport};
+use pmesh_build::{AttributeWeights, BuildOptions, BuildReport};
 use pmesh_format::{EncodeOptions, Header, ProgressiveMesh};
 use serde_json::{Value, json};
 
@@ -21,7 +21,12 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
     let mesh = convert::joined_mesh(&scene)?;
     watch.lap("read");
 
-    let options = BuildOptions { cost: arguments.cost, ..BuildOptions::default() };
+    let attributes = AttributeWeights {
+        normal: arguments.normal_weight,
+        uv: arguments.uv_weight,
+        ..AttributeWeights::default()
+    };
+    let options = BuildOptions { cost: arguments.cost, attributes, ..BuildOptions::default() };
     let watch = RefCell::new(watch);
     let bar = FractionBar::new("order");
     let mut calls = 0;
@@ -125,6 +130,7 @@ impl Written<'_> {
             "positions": options.positions.name(),
             "position_error_m": convert::position_error(header),
             "cost": arguments.cost.name(),
+            "attribute_weights_m": { "normal": arguments.normal_weight, "uv": arguments.uv_weight },
             "vertices": self.vertices(),
             "wedges": progressive.wedges.len(),
             "faces": progressive.faces.len(),
