@@ -117,8 +117,10 @@ struct Changes {
     positions: Vec<[f32; 3]>,
     /// For each vertex from the base on, how many slots its parent had.
     counts: Vec<u32>,
-    /// Whether these slots switch, in canonical order.
-    switches: Vec<bool>,
+    /// Which of these slots switch, the first of ascending order in bit 0; of parents with few of them.
+    masks: Vec<u32>,
+    /// The same of parents with many slots, one after the other.
+    long: Vec<bool>,
     /// Slots that were looked at.
     looked_at: u64,
 }

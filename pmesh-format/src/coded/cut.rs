@@ -48,7 +48,7 @@ impl Cuts {
         let mean = logarithm(lengths.iter().sum::<u64>() / count as u64) as i32;
         let mut steps = [0u8; MOST];
         for (step, &length) in steps.iter_mut().zip(lengths) {
-            *step = ((logarithm(length) as i32 - mean >> 2) + 8).clamp(0, 15) as u8;
+            *step = (((logarithm(length) as i32 - mean) >> 2) + 8).clamp(0, 15) as u8;
         }
         let step = |k: usize| usize::from(steps[k & (MOST - 1)]);
         // Edges by descending length, equal ones by place.

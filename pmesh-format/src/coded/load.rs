@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use super::rans::Reader;
+use super::ring::MOST;
 use super::walk::{Bounds, Nothing};
 use super::{Changes, Fault, LENGTH, SLOTS_A_BYTE, State, least_bytes};
 use crate::bits::Bits;
@@ -63,7 +64,7 @@ impl State {
         let vertices = extent.vertices.start as usize..extent.vertices.end as usize;
         let splits = changes.counts.len();
         let mut out = Vec::with_capacity(
-            8 * vertices.len() + 12 * changes.introduced.len() + 4 * splits + changes.switches.len() / 8 + 8,
+            8 * vertices.len() + 12 * changes.introduced.len() + 4 * splits + changes.counts.len() + 8,
         );
         for x in changes.positions.as_flattened() {
             out.extend_from_slice(&x.to_le_bytes());
@@ -80,15 +81,17 @@ impl State {
             out.extend_from_slice(&parent.to_le_bytes());
         }
         let mut bits = Bits::default();
-        let mut switches = &changes.switches[..];
+        let (mut masks, mut long) = (changes.masks.iter(), &changes.long[..]);
         for &count in &changes.counts {
-            let (now, later) = switches.split_at(count as usize);
-            for part in now.rchunks(64) {
-                // Codes stand in descending order of slots (PMESH-SWI-01).
-                let word = part.iter().fold(0, |word, &switch| word << 1 | u64::from(switch));
-                bits.push(word, part.len() as u32);
+            // Codes stand in descending order of slots (PMESH-SWI-01).
+            if count as usize <= MOST {
+                let mask = masks.next().map_or(0, |mask| mask.reverse_bits());
+                bits.push(u64::from(mask.unbounded_shr(u32::BITS - count)), count);
+                continue;
             }
-            switches = later;
+            let (now, later) = long.split_at(count as usize);
+            now.iter().rev().for_each(|&switches| bits.push(switches.into(), 1));
+            long = later;
         }
         out.extend_from_slice(&bits.to_bytes());
         out

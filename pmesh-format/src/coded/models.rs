@@ -32,6 +32,7 @@ pub(super) struct Binary {
 }
 
 /// 65,536 / (n + 1.6), rounded down, for n values seen.
+#[expect(clippy::indexing_slicing, reason = "a constant")]
 const RATES: [u16; BINARY_MOST as usize + 1] = {
     let mut rates = [0; BINARY_MOST as usize + 1];
     let mut n = 0;
@@ -82,6 +83,7 @@ pub(super) struct Symbols {
 }
 
 /// What the starts tend to when a symbol comes again and again.
+#[expect(clippy::indexing_slicing, reason = "a constant")]
 const TARGETS: [[i16; 16]; 16] = {
     let mut targets = [[0; 16]; 16];
     let mut symbol = 0;

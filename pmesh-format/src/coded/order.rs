@@ -25,9 +25,9 @@ pub(crate) fn arranged(mesh: &ProgressiveMesh, ends: &[u32]) -> ProgressiveMesh 
             // Of a parent that is there its place is known, of one that comes in this packet not yet.
             let parent = parent(vertex);
             if parent < start {
-                children.push((new[parent as usize], vertex))
+                children.push((new[parent as usize], vertex));
             } else {
-                later.push((parent, vertex))
+                later.push((parent, vertex));
             }
         }
         children.sort_unstable();

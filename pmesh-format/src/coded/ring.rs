@@ -14,29 +14,38 @@ pub(super) struct Spoke {
     pub(super) back: u32,
 }
 
-/// Puts up to [`MOST`] faces in order, each behind one that it shares an edge with as long as there is one; true if they
-/// go round once, the last beside the first.
-pub(super) fn order(spokes: &mut [Spoke]) -> bool {
-    let count = spokes.len();
-    for k in 1..count {
-        let back = spokes[k - 1].back;
-        let Some(next) = (k..count).find(|&j| spokes[j].out == back) else {
-            fans(spokes);
+/// Puts up to [`MOST`] faces, which stand in canonical order, in order, each behind one that it shares an edge with as long as
+/// there is one; true if they go round once, the last beside the first.
+#[inline(always)]
+pub(super) fn order(spokes: &mut [Spoke; MOST], count: usize) -> bool {
+    let mut ordered = [spokes[0]; MOST];
+    let mut left = u32::MAX.unbounded_shr((MOST - count) as u32) & !1;
+    let mut back = spokes[0].back;
+    for to in ordered.iter_mut().take(count).skip(1) {
+        let mut beside = 0u32;
+        for (k, spoke) in spokes[..count].iter().enumerate() {
+            beside |= u32::from(spoke.out == back) << k;
+        }
+        let next = (beside & left).trailing_zeros();
+        if next == u32::BITS {
+            fans(&mut spokes[..count]);
             return false;
-        };
-        spokes[k..=next].rotate_right(1);
+        }
+        left &= !(1 << next);
+        *to = spokes[next as usize & (MOST - 1)];
+        back = to.back;
     }
-    let round = count > 1 && spokes[count - 1].back == spokes[0].out;
-    if !round {
-        fans(spokes);
+    if count < 2 || back != spokes[0].out {
+        fans(&mut spokes[..count]);
+        return false;
     }
-    round
+    *spokes = ordered;
+    true
 }
 
 /// Where faces do not go round: first those fans that have a beginning, by the place of their first face, then what is left.
 #[cold]
 fn fans(spokes: &mut [Spoke]) {
-    spokes.sort_unstable_by_key(|spoke| spoke.place);
     let count = spokes.len();
     let mut ordered = [Spoke::default(); MOST];
     let mut used = 0u32;

@@ -11,6 +11,7 @@ use super::{Changes, Fault, LENGTH, SLOTS_A_BYTE, Shape, State};
 use crate::code::codes;
 use crate::header::PacketEntry;
 use crate::lattice::Lattice;
+use crate::slots::Slots;
 use crate::storage::Positions;
 
 /// What a writer knows; the reader's knows nothing, and nobody looks at what it says.
@@ -80,12 +81,6 @@ impl Bounds {
     }
 }
 
-/// The side of a run: where a new face has its third vertex.
-struct Sides {
-    /// Third vertices of faces that have the new vertex third, and second.
-    thirds: [Vec<u32>; 2],
-}
-
 impl State {
     /// Codes a packet; what it has changed stands in `changes`, also after an error.
     pub(super) fn packet<C: Coder, S: Source>(
@@ -99,6 +94,11 @@ impl State {
         let end = extent.vertices.end;
         self.cells.reserve(extent.vertices.len());
         self.shapes.reserve(extent.vertices.len());
+        let splits = extent.vertices.len();
+        changes.counts.reserve(splits);
+        changes.masks.reserve(splits);
+        changes.shapes.reserve(splits);
+        changes.introduced.reserve(extent.faces.len());
         self.slots.resize(end as usize, usize::MAX);
         if extent.vertices.start < self.base {
             self.code_base(coder, source, extent, bounds, changes)?;
@@ -198,6 +198,7 @@ impl State {
         Ok(())
     }
 
+    #[inline(always)]
     fn introduce(&mut self, corners: [u32; 3], changes: &mut Changes) {
         let face = self.corners.len() as u32;
         for (slot, corner) in (3 * face..).zip(corners) {
@@ -238,7 +239,7 @@ impl State {
             for (to, from) in few.iter_mut().zip(list.iter().enumerate().map(spoke)) {
                 *to = from;
             }
-            let round = order(&mut few[..count]);
+            let round = order(&mut few, count);
             (&few[..count], round)
         } else {
             many.extend(list.iter().enumerate().map(spoke));
@@ -275,7 +276,7 @@ impl State {
         }
         let mut inner = 0u64;
         let mut chosen = Vec::new();
-        let mut sides = Sides { thirds: [Vec::new(), Vec::new()] };
+        let mut thirds = [Vec::new(), Vec::new()];
         let mut ends = None;
         let mut visit = |neighbour: u32, repeated: bool| {
             let cell = self.cells[neighbour as usize];
@@ -329,7 +330,7 @@ impl State {
                 let mut left = given.clone().count();
                 let guess = expected[side].unwrap_or(fallback[side]);
                 loop {
-                    let so_far = sides.thirds[side].len().min(3);
+                    let so_far = thirds[side].len().min(3);
                     let model = (side * 4 + so_far) * 2 + usize::from(expected[side].is_some());
                     if !coder.bit(&mut self.models.faces[model], left > 0) {
                         break;
@@ -337,8 +338,8 @@ impl State {
                     left = left.saturating_sub(1);
                     let third = given.next().map_or(0, |face| face.1[1 + side]);
                     let third = self.code_third(coder, spokes, guess, third, vertex, parent)?;
-                    sides.thirds[side].push(third);
-                    let new = sides.thirds.iter().map(Vec::len).sum::<usize>();
+                    thirds[side].push(third);
+                    let new = thirds.iter().map(Vec::len).sum::<usize>();
                     if coder.failed() {
                         return Err(LENGTH);
                     }
@@ -357,21 +358,32 @@ impl State {
             let position = exact.code(coder, cell, source.position(vertex));
             changes.positions.push(position.ok_or((codes::POSITION, 0))?);
         }
-        if let Some(ends) = ends {
-            changes.switches.extend((0..count).map(|k| moved >> k & 1 == 1));
-            sides.thirds = ends.map(|third| alloc::vec![third]);
-        } else {
-            changes.switches.extend_from_slice(&chosen);
-        }
         changes.counts.push(count as u32);
         // From here on nothing fails.
-        let from = changes.switches.len() - count;
-        let switches = &changes.switches[from..];
-        self.slots.split(parent, vertex, |k| switches[k]);
-        for &slot in self.slots.of(vertex) {
-            self.corners.as_flattened_mut()[slot as usize] = vertex;
+        if count <= MOST {
+            for (place, &switches) in chosen.iter().enumerate() {
+                moved |= u64::from(switches) << place;
+            }
+            changes.masks.push(moved as u32);
+        } else {
+            changes.long.extend_from_slice(&chosen);
         }
-        let [starts, stops] = &sides.thirds;
+        if count <= Slots::SHORT {
+            self.slots.split_short(parent, vertex, moved as u32);
+        } else if count <= MOST {
+            self.slots.split(parent, vertex, |k| moved >> k & 1 == 1);
+        } else {
+            self.slots.split(parent, vertex, |k| chosen[k]);
+        }
+        let corners = self.corners.as_flattened_mut();
+        for &slot in self.slots.of(vertex) {
+            corners[slot as usize] = vertex;
+        }
+        if let Some([start, stop]) = ends {
+            self.introduce([parent, start, vertex], changes);
+            self.introduce([parent, vertex, stop], changes);
+        }
+        let [starts, stops] = &thirds;
         for &third in starts {
             self.introduce([parent, third, vertex], changes);
         }
