@@ -94,24 +94,24 @@ impl Slots {
     }
 
     /// Moves the slots of `parent` whose bit in `chosen` is set, the first slot's in bit 0, to `child`, whose list is empty;
-    /// both stay in order. Returns the slots moved. For lists that lie in a block: of at most [`Slots::SHORT`] slots.
+    /// both stay in order. Returns the slots moved. For a list of at most [`Slots::SHORT`] slots, and a child after the parent.
     #[inline]
     pub(crate) fn split_short(&mut self, parent: u32, child: u32, chosen: u32) -> &[u32] {
         let (parent, child) = (parent as usize, child as usize);
-        let slots = self.blocks[parent];
         let len = self.lens[parent];
-        // Both lists are written whole, so that nothing branches on what the bits are.
-        let mut lists = [[0u32; BLOCK]; 2];
+        // A parent comes before its child.
+        let (before, after) = self.blocks.split_at_mut(child);
+        let (stays, moves) = (&mut before[parent], &mut after[0]);
+        // All slots are written to both lists, so that nothing branches on what the bits are; one by one, since a processor
+        // waits where it reads as a whole what was written in parts.
         let mut moved = 0usize;
-        for (k, &slot) in slots.iter().enumerate() {
-            let bit = (chosen >> k & 1) as usize;
-            lists[1][moved & (BLOCK - 1)] = slot;
-            lists[0][(k - moved) & (BLOCK - 1)] = slot;
-            moved += bit;
+        for k in 0..BLOCK {
+            let slot = stays[k];
+            moves[moved & (BLOCK - 1)] = slot;
+            stays[(k - moved) & (BLOCK - 1)] = slot;
+            moved += (chosen >> k & 1) as usize;
         }
-        self.blocks[parent] = lists[0];
         self.lens[parent] = len - moved as u8;
-        self.blocks[child] = lists[1];
         self.lens[child] = moved as u8;
         &self.blocks[child][..moved]
     }
