@@ -101,7 +101,7 @@ fn measure(name: &str, file: &[u8]) {
                 decode_all(file, &Limits::default(), |event| {
                     black_box(event);
                 })
-                .expect("a valid file")
+                .expect("a valid file");
             }),
             time(|| drop(black_box(load(file)))),
             time(|| black_box(&mut copy).copy_from_slice(black_box(&plain))),

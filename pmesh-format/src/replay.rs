@@ -22,7 +22,6 @@ use crate::packet::Packet;
 use crate::slots::Slots;
 use crate::wire::MATERIALS;
 
-mod grow;
 mod levels;
 mod load;
 mod touched;
