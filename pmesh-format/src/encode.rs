@@ -7,8 +7,8 @@ use ivg_wire::{
 };
 
 use crate::attributes::Attributes;
-use crate::coded::{Known, Saver, arranged, cells};
 use crate::bits::Bits;
+use crate::coded::{Known, Saver, arranged, cells};
 use crate::header::{Header, PARAMETER_BITS, PacketEntry};
 use crate::lattice::{Lattice, bounds};
 use crate::material::write_names;
@@ -54,12 +54,12 @@ pub struct EncodeOptions {
 }
 
 impl EncodeOptions {
-    /// The defaults: raw packets of 256 vertices, then 30 % more with each packet, but at most 5,000 at once; positions as
+    /// The defaults: raw packets of 256 vertices, then 30 % more with each packet, but at most 262,144 at once; positions as
     /// given; 10 bits for coded normals, 12 for coded texture coordinates.
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            packets: PacketSize::Growing { first: 256, percent: 30, most: 5000 },
+            packets: PacketSize::Growing { first: 256, percent: 30, most: 1 << 18 },
             mode: Mode::Raw,
             positions: Positions::F32,
             normal_bits: 10,
