@@ -238,3 +238,16 @@ fn the_coder_writes_the_bytes_of_the_specification() {
 
 /// Test values of PMESH-COD-04.
 const PINNED: &[u8] = &[112, 188, 10, 4, 243, 126];
+
+/// A change that writer and reader share goes unnoticed when files are only read back.
+#[test]
+fn the_bytes_of_whole_files_stay_as_they_are() {
+    let mesh = grid(20, 20, 3);
+    for (positions, bytes, id) in [
+        (Positions::Quantised(12), 3276, 3_826_902_412_785_869_286),
+        (Positions::F32, 5524, 17_904_125_280_607_570_330),
+    ] {
+        let file = encode(&mesh, &options(positions, 100)).unwrap();
+        assert_eq!((file.len(), replayed(&file).header().content_id.0), (bytes, id), "{positions:?}");
+    }
+}
