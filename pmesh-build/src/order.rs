@@ -16,9 +16,8 @@ use crate::surface::{Ring, Surface};
 const HUB_FACES: usize = 64;
 /// Coincident faces are avoided while more than one vertex in this many is left (spec PMESH-LVL-03).
 const COINCIDENT_SHARE: usize = 100;
-/// Topology gives way from one vertex in this many on, even while collapses that keep it are left. A scan has hundreds of
-/// pinholes and tunnels, each of which holds some vertices: at 0.2 % of the faces of the Stanford dragon keeping them costs
-/// half of all vertices and doubles the mean distance.
+/// Topology gives way from one vertex in this many on, even while collapses that keep it are left. The rims of a scan's
+/// pinholes and tunnels hold vertices: at 0.2 % of the faces of the Stanford dragon keeping them doubles the mean distance.
 const TOPOLOGY_SHARE: usize = 300;
 /// When nothing is allowed any more the rules are relaxed, unless going over all vertices once more (what is around them
 /// has changed) had freed at least one collapse for this many vertices.

@@ -483,6 +483,6 @@ fn pinholes_do_not_hold_the_coarsest_levels() {
     assert_eq!(report.boundary_edges, 3 * (14_400 - report.faces));
     check_levels(&progressive, 100);
     assert_eq!((report.base_vertices, report.forced_collapses), (3, 0));
-    // Its 148 pinholes would keep three vertices each; from 7200 / 300 = 24 vertices on they may not.
+    // Rims stay rims down to 7200 / 300 = 24 vertices; kept any longer they would go on to 10.
     assert!(report.relaxed_from >= 24, "{report:?}");
 }
