@@ -2,8 +2,10 @@
 //! to date. It shares nothing with [`pmesh_format`] but the header and the packet directory, and says of a packet that breaks a
 //! rule which one, and at which byte.
 
+mod coded;
 mod lattice;
 mod raw;
+mod starts;
 #[cfg(test)]
 mod tests;
 
@@ -24,6 +26,7 @@ pub struct Fault {
 pub struct Reference<'a> {
     header: &'a Header,
     tables: Tables,
+    coded: coded::Coded,
 }
 
 /// What the packets say.
@@ -50,7 +53,7 @@ impl<'a> Reference<'a> {
     /// For the packets of the file with this header.
     #[must_use]
     pub fn new(header: &'a Header) -> Self {
-        Self { header, tables: Tables::default() }
+        Self { header, tables: Tables::default(), coded: coded::Coded::new() }
     }
 
     /// Takes the payload of the next packet.
@@ -66,12 +69,17 @@ impl<'a> Reference<'a> {
         let entry = &self.header.packets[self.tables.packets];
         assert_eq!(payload.len(), entry.payload_bytes as usize, "the directory says how long it is");
         let mut tables = self.tables.clone();
+        let mut coded = self.coded.clone();
         match self.header.mode {
             Mode::Raw => raw::take(&mut tables, self.header, entry, payload)?,
-            other => panic!("a mode that this reader does not know: {other:?}"),
+            Mode::Coded => {
+                let raw = coded.read(self.header, entry, payload)?;
+                raw::take(&mut tables, self.header, entry, &raw)?;
+            }
         }
         tables.packets += 1;
         self.tables = tables;
+        self.coded = coded;
         Ok(())
     }
 

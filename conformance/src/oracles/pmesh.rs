@@ -103,11 +103,8 @@ fn see_packet(packet: &Packet<'_>) -> u64 {
 /// Vertices times faces and wedges, at most, for the second reader, which goes through all of them for each vertex.
 const MOST_FOR_REFERENCE: u64 = 1 << 18;
 
-/// The second reader of a file's packets; `None` if they would keep it busy for long, or are of a mode that it does not read.
+/// The second reader of a file's packets; `None` if they would keep it busy for long.
 pub(super) fn reference(header: &Header) -> Option<Reference<'_>> {
-    if header.mode != Mode::Raw {
-        return None;
-    }
     let things = u64::from(header.face_count) + u64::from(header.wedge_count);
     (u64::from(header.vertex_count) * things <= MOST_FOR_REFERENCE).then(|| Reference::new(header))
 }

@@ -1,0 +1,711 @@
+//! Packets of mode `coded`: `spec/pmesh.md`, section 8, turned into the payload of a raw packet that says the same.
+
+use super::Fault;
+use super::lattice::Lattice;
+use super::starts::{ALONG, HEIGHTS};
+use pmesh_format::{Header, PacketEntry};
+
+/// Codes of `spec/tables/errors.toml`; all are reported at byte 0 unless the text says otherwise.
+const POSITION: u16 = 501;
+const PARENT: u16 = 503;
+const CORNER: u16 = 504;
+const FACE_VERTICES: u16 = 505;
+const CODED_LENGTH: u16 = 515;
+const CODED_PADDING: u16 = 516;
+const CODED_FACES: u16 = 517;
+const CODED_WORK: u16 = 518;
+
+fn fault<T>(code: u16) -> Result<T, Fault> {
+    Err(Fault { code, at: 0 })
+}
+
+type Cell = [i64; 3];
+
+/// PMESH-COD-04: a choice of two.
+#[derive(Debug, Clone)]
+struct Binary {
+    p: i64,
+    n: i64,
+}
+
+/// PMESH-COD-04: one of 16.
+#[derive(Debug, Clone)]
+struct Sixteen {
+    starts: Vec<i64>,
+    n: i64,
+}
+
+impl Sixteen {
+    fn new(first: &[i64; 15]) -> Self {
+        Self { starts: [&[0], &first[..]].concat(), n: 0 }
+    }
+}
+
+/// PMESH-COD-02: the state and the words behind it.
+struct Symbols<'a> {
+    x: u64,
+    payload: &'a [u8],
+    at: usize,
+    missing: bool,
+}
+
+impl Symbols<'_> {
+    fn refill(&mut self) {
+        if self.x < 1 << 16 {
+            let word = match self.payload.get(self.at..self.at + 2) {
+                Some(word) => {
+                    self.at += 2;
+                    u64::from(word[0]) + 256 * u64::from(word[1])
+                }
+                None => {
+                    self.missing = true;
+                    0
+                }
+            };
+            self.x = (self.x << 16) + word;
+        }
+    }
+
+    fn range(&mut self, c: i64, f: i64) {
+        let low = self.x % (1 << 15);
+        self.x = f as u64 * (self.x >> 15) + low - c as u64;
+        self.refill();
+    }
+
+    fn bit(&mut self, model: &mut Binary) -> bool {
+        let value = ((self.x % (1 << 15)) as i64) < model.p;
+        if value {
+            self.range(0, model.p)
+        } else {
+            self.range(model.p, (1 << 15) - model.p)
+        }
+        let target = if value { (1 << 15) - 32 } else { 32 };
+        model.p += ((target - model.p) * (655_360 / (10 * model.n + 16))).div_euclid(1 << 16);
+        model.n = (model.n + 1).min(60);
+        value
+    }
+
+    fn sixteen(&mut self, model: &mut Sixteen) -> i64 {
+        let low = (self.x % (1 << 15)) as i64;
+        let k = (0..16).rev().find(|&k| model.starts[k] <= low).expect("the first start is 0");
+        let end = if k == 15 { 1 << 15 } else { model.starts[k + 1] };
+        self.range(model.starts[k], end - model.starts[k]);
+        let h = if model.n < 20 {
+            4
+        } else if model.n < 80 {
+            5
+        } else {
+            6
+        };
+        for i in 1..16 {
+            let target = if i <= k { 8 * i as i64 } else { (1 << 15) - 8 * (16 - i as i64) };
+            model.starts[i] += (target - model.starts[i]).div_euclid(1 << h);
+        }
+        model.n = (model.n + 1).min(80);
+        k as i64
+    }
+
+    fn raw(&mut self, bits: u32) -> i64 {
+        if bits > 16 {
+            let low = self.raw(16);
+            return low + (self.raw(bits - 16) << 16);
+        }
+        let value = self.x % (1 << bits);
+        self.x >>= bits;
+        self.refill();
+        value as i64
+    }
+}
+
+#[derive(Debug, Clone)]
+struct Models {
+    parents: Vec<Binary>,
+    regular: Binary,
+    single: Vec<Binary>,
+    further: Vec<Binary>,
+    seed: Vec<Binary>,
+    extend: Vec<Binary>,
+    switches: Vec<Binary>,
+    faces: Vec<Binary>,
+    thirds: Vec<Binary>,
+    along: Vec<Sixteen>,
+    heights: Vec<Sixteen>,
+}
+
+/// PMESH-COD-05: what is known of a vertex.
+#[derive(Debug, Clone)]
+struct Known {
+    cell: Cell,
+    scale: usize,
+    height: i64,
+    packet: usize,
+    split: bool,
+}
+
+/// What coded packets build up.
+#[derive(Debug, Clone)]
+pub(super) struct Coded {
+    models: Models,
+    packets: usize,
+    known: Vec<Known>,
+    corners: Vec<[usize; 3]>,
+}
+
+/// What a packet brings, in the order of a raw one.
+#[derive(Default)]
+struct Brought {
+    positions: Vec<u8>,
+    faces: Vec<[usize; 3]>,
+    parents: Vec<usize>,
+    /// Switch codes of one bit, canonical order.
+    codes: Vec<bool>,
+}
+
+/// A face at a vertex: its slot, the two vertices that follow.
+#[derive(Clone, Copy)]
+struct Spoke {
+    slot: usize,
+    out: usize,
+    back: usize,
+}
+
+fn log2(x: i64) -> i64 {
+    i64::from(x.max(1).ilog2())
+}
+
+/// The class c and the logarithm g of PMESH-COD-05.
+fn class(x: i64) -> i64 {
+    4 * log2(x) + ((x.max(1) << 2 >> log2(x)) & 3)
+}
+
+fn logarithm(x: i64) -> i64 {
+    8 * log2(x) + ((x.max(1) << 3 >> log2(x)) & 7)
+}
+
+fn scale(square: i64) -> usize {
+    if square == 0 { 0 } else { ((log2(square) + 2) / 2).min(15) as usize }
+}
+
+fn bits(most: i64) -> u32 {
+    if most == 0 { 0 } else { most.ilog2() + 1 }
+}
+
+fn minus(a: Cell, b: Cell) -> Cell {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn square(a: Cell) -> i64 {
+    a.iter().map(|x| x * x).sum()
+}
+
+impl Coded {
+    pub(super) fn new() -> Self {
+        let many = |p: i64, count: usize| vec![Binary { p, n: 0 }; count];
+        let models = Models {
+            parents: many(1 << 13, 8 * 9 * 16),
+            regular: Binary { p: 32_000, n: 0 },
+            single: many(1 << 11, 8 * 16),
+            further: many(1 << 14, 8),
+            seed: many(1 << 14, 4 * 16 * 16),
+            extend: many(1 << 14, 4 * 2 * 8 * 16),
+            switches: many(1 << 14, 3),
+            faces: many(1 << 14, 16),
+            thirds: many(30_000, 2),
+            along: ALONG.iter().map(Sixteen::new).collect(),
+            heights: HEIGHTS.iter().map(Sixteen::new).collect(),
+        };
+        Self { models, packets: 0, known: Vec::new(), corners: Vec::new() }
+    }
+
+    /// The payload of a raw packet that says the same.
+    pub(super) fn read(
+        &mut self,
+        header: &Header,
+        entry: &PacketEntry,
+        payload: &[u8],
+    ) -> Result<Vec<u8>, Fault> {
+        if payload.len() < 4 {
+            return fault(CODED_LENGTH);
+        }
+        let x = u64::from(u32::from_le_bytes([payload[0], payload[1], payload[2], payload[3]]));
+        let mut symbols = Symbols { x, payload, at: 4, missing: false };
+        let mut brought = Brought::default();
+        let cells = Cells::new(header);
+        let (start, end) = (entry.vertices.start as usize, entry.vertices.end as usize);
+        let base = header.base_vertices as usize;
+        if start < base {
+            self.base(&mut symbols, &mut brought, &cells, base, entry.faces.end as usize)?;
+        }
+        let (mut parent, mut times, mut looked_at) = (0, 0, 0);
+        for vertex in start.max(base)..end {
+            loop {
+                let model = self.parent_model(parent, times);
+                if symbols.bit(&mut self.models.parents[model]) {
+                    break;
+                }
+                parent += 1;
+                times = 0;
+                if parent >= vertex {
+                    return fault(PARENT);
+                }
+            }
+            times += 1;
+            looked_at += self.spokes(parent).len();
+            if looked_at > 64 * payload.len() {
+                return fault(CODED_WORK);
+            }
+            self.split(&mut symbols, &mut brought, &cells, vertex, parent, entry.faces.end as usize)?;
+            if symbols.missing {
+                return fault(CODED_LENGTH);
+            }
+        }
+        if self.corners.len() != entry.faces.end as usize {
+            return fault(CODED_FACES);
+        }
+        if symbols.missing || symbols.x != 1 << 16 {
+            return fault(CODED_LENGTH);
+        }
+        let faces = (entry.faces.end - entry.faces.start) as usize;
+        let demanded = (4 + (end - start + faces) / 4 + start / 64).max(looked_at.div_ceil(64));
+        let left = symbols.at;
+        if left < payload.len() && payload.len() > demanded {
+            return Err(Fault { code: CODED_LENGTH, at: left });
+        }
+        if payload[left..].iter().any(|&byte| byte != 0) {
+            return Err(Fault { code: CODED_PADDING, at: left });
+        }
+        self.packets += 1;
+        Ok(brought.payload())
+    }
+
+    /// PMESH-COD-07: which model tells whether a vertex is split (once more).
+    fn parent_model(&self, parent: usize, times: usize) -> usize {
+        let known = &self.known[parent];
+        let ago = self.packets - known.packet;
+        let h = match times {
+            0 if !known.split => ago.min(3),
+            0 => {
+                if ago > 1 {
+                    5
+                } else {
+                    4
+                }
+            }
+            1 => 6,
+            _ => 7,
+        };
+        (9 * h + self.spokes(parent).len().clamp(3, 11) - 3) * 16 + known.scale
+    }
+
+    /// PMESH-COD-06.
+    fn base(
+        &mut self,
+        symbols: &mut Symbols<'_>,
+        brought: &mut Brought,
+        cells: &Cells,
+        base: usize,
+        most_faces: usize,
+    ) -> Result<(), Fault> {
+        for _ in 0..base {
+            let cell = cells.most.map(|most| symbols.raw(bits(most)));
+            if (0..3).any(|k| cell[k] > cells.most[k]) {
+                return fault(POSITION);
+            }
+            brought.positions.extend(cells.position(symbols, cell)?);
+            self.known.push(Known { cell, scale: 0, height: 0, packet: self.packets, split: false });
+            if symbols.missing {
+                return fault(CODED_LENGTH);
+            }
+        }
+        let count = symbols.raw(32) as usize;
+        if count > most_faces {
+            return fault(CODED_FACES);
+        }
+        for _ in 0..count {
+            let face = [0; 3].map(|_: usize| symbols.raw(bits(base as i64 - 1)) as usize);
+            if symbols.missing {
+                return fault(CODED_LENGTH);
+            }
+            if face.iter().any(|&corner| corner >= base) {
+                return fault(CORNER);
+            }
+            if face[0] == face[1] || face[1] == face[2] || face[2] == face[0] {
+                return fault(FACE_VERTICES);
+            }
+            self.corners.push(face);
+            brought.faces.push(face);
+        }
+        Ok(())
+    }
+
+    /// The faces at a vertex, in ascending order of slots.
+    fn spokes(&self, vertex: usize) -> Vec<Spoke> {
+        let slots = (0..3 * self.corners.len()).filter(|slot| self.corners[slot / 3][slot % 3] == vertex);
+        slots
+            .map(|slot| {
+                let face = self.corners[slot / 3];
+                Spoke { slot, out: face[(slot + 1) % 3], back: face[(slot + 2) % 3] }
+            })
+            .collect()
+    }
+
+    /// PMESH-COD-09, PMESH-COD-10, and what is remembered afterwards.
+    fn split(
+        &mut self,
+        symbols: &mut Symbols<'_>,
+        brought: &mut Brought,
+        cells: &Cells,
+        vertex: usize,
+        parent: usize,
+        most_faces: usize,
+    ) -> Result<(), Fault> {
+        let ascending = self.spokes(parent);
+        let (spokes, round) = ordered(&ascending);
+        let m = spokes.len();
+        let here = self.known[parent].cell;
+        let edges: Vec<i64> =
+            spokes.iter().map(|spoke| square(minus(self.known[spoke.out].cell, here))).collect();
+        let mut switches = vec![false; m];
+        let mut thirds: [Vec<usize>; 2] = [Vec::new(), Vec::new()];
+        let mut inside = Vec::new();
+        let mut neighbours = vec![(parent, here)];
+        if round && symbols.bit(&mut self.models.regular) {
+            let (first, count) = run(symbols, &mut self.models, &edges);
+            if self.corners.len() + 2 > most_faces {
+                return fault(CODED_FACES);
+            }
+            let places: Vec<usize> = (0..count).map(|k| (first + k) % m).collect();
+            for &k in &places {
+                switches[k] = true;
+                neighbours.push((spokes[k].out, self.known[spokes[k].out].cell));
+            }
+            let last = spokes[places[count - 1]].back;
+            neighbours.push((last, self.known[last].cell));
+            inside = places[1..].to_vec();
+            thirds = [vec![spokes[first].out], vec![last]];
+        } else {
+            let mut before = 0;
+            for k in 0..m {
+                switches[k] = symbols.bit(&mut self.models.switches[before]);
+                before = 1 + usize::from(switches[k]);
+                if switches[k] {
+                    for neighbour in [spokes[k].out, spokes[k].back] {
+                        let cell = self.known[neighbour].cell;
+                        if neighbours.len() < 34 && neighbours.iter().all(|&(_, there)| there != cell) {
+                            neighbours.push((neighbour, cell));
+                        }
+                    }
+                }
+            }
+            self.escape(symbols, &spokes, &switches, &mut thirds, vertex, parent, most_faces)?;
+        }
+        let (cell, height) = self.cell(symbols, &spokes, &switches, &neighbours, parent);
+        if (0..3).any(|k| cell[k] < 0 || cell[k] > cells.most[k]) {
+            return fault(POSITION);
+        }
+        brought.positions.extend(cells.position(symbols, cell)?);
+        // The mesh of level v + 1.
+        for spoke in ascending.iter().rev() {
+            let switch = spokes.iter().zip(&switches).any(|(s, &switch)| s.slot == spoke.slot && switch);
+            brought.codes.push(switch);
+            if switch {
+                self.corners[spoke.slot / 3][spoke.slot % 3] = vertex;
+            }
+        }
+        let starts = thirds[0].iter().map(|&x| [parent, x, vertex]);
+        let new: Vec<[usize; 3]> = starts.chain(thirds[1].iter().map(|&x| [parent, vertex, x])).collect();
+        self.corners.extend(&new);
+        brought.faces.extend(new);
+        brought.parents.push(parent);
+        // What is remembered.
+        let k = neighbours.len() as i64;
+        let around: i64 = neighbours.iter().map(|&(_, there)| square(minus(there, cell))).sum();
+        let all: i64 = edges.iter().take(32).sum();
+        let inner: i64 = inside.iter().map(|&k| edges[k]).sum();
+        let apart = square(minus(cell, here));
+        let old = &mut self.known[parent];
+        old.scale = scale((all + apart - inner) / (m as i64 + 1 - inside.len() as i64));
+        old.height = (height + old.height) / 2;
+        old.packet = self.packets;
+        old.split = true;
+        self.known.push(Known { cell, scale: scale(around / k), height, packet: self.packets, split: false });
+        Ok(())
+    }
+
+    /// New faces where a split is not regular: the third vertices of those of either side.
+    #[expect(clippy::too_many_arguments, reason = "all of the split")]
+    fn escape(
+        &mut self,
+        symbols: &mut Symbols<'_>,
+        spokes: &[Spoke],
+        switches: &[bool],
+        thirds: &mut [Vec<usize>; 2],
+        vertex: usize,
+        parent: usize,
+        most_faces: usize,
+    ) -> Result<(), Fault> {
+        let m = spokes.len();
+        let starts = (1..m).find(|&k| switches[k] && !switches[k - 1]).map(|k| spokes[k].out);
+        let stops = (1..m).find(|&k| !switches[k] && switches[k - 1]).map(|k| spokes[k - 1].back);
+        let without = [spokes.first().map_or(0, |s| s.out), spokes.last().map_or(0, |s| s.back)];
+        for (side, expected) in [starts, stops].into_iter().enumerate() {
+            loop {
+                let model = 2 * (4 * side + thirds[side].len().min(3)) + usize::from(expected.is_some());
+                if !symbols.bit(&mut self.models.faces[model]) {
+                    break;
+                }
+                let x = if symbols.bit(&mut self.models.thirds[0]) {
+                    expected.unwrap_or(without[side])
+                } else if symbols.bit(&mut self.models.thirds[1]) {
+                    let place = symbols.raw(bits(m as i64)) as usize;
+                    let Some(spoke) = spokes.get(place) else { return fault(CORNER) };
+                    if symbols.raw(1) == 1 { spoke.back } else { spoke.out }
+                } else {
+                    symbols.raw(bits(vertex as i64)) as usize
+                };
+                if x >= vertex {
+                    return fault(CORNER);
+                }
+                if x == parent {
+                    return fault(FACE_VERTICES);
+                }
+                thirds[side].push(x);
+                if symbols.missing {
+                    return fault(CODED_LENGTH);
+                }
+                if self.corners.len() + thirds[0].len() + thirds[1].len() > most_faces {
+                    return fault(CODED_FACES);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// PMESH-COD-10: the cell of the new vertex and its height class.
+    fn cell(
+        &mut self,
+        symbols: &mut Symbols<'_>,
+        spokes: &[Spoke],
+        switches: &[bool],
+        neighbours: &[(usize, Cell)],
+        parent: usize,
+    ) -> (Cell, i64) {
+        let here = self.known[parent].cell;
+        let k = neighbours.len() as i64;
+        let sum = |f: &dyn Fn(Cell) -> i64| neighbours.iter().map(|&(_, cell)| f(cell)).sum::<i64>();
+        let mean = [0, 1, 2].map(|axis| (2 * sum(&|cell| cell[axis]) + k).div_euclid(2 * k));
+        let spread = [0, 1, 2].map(|axis| class(8 * sum(&|cell| (cell[axis] - mean[axis]).abs()) / k + 1));
+        let mut n = [0i64; 3];
+        for (spoke, _) in spokes.iter().zip(switches).filter(|(_, switch)| **switch) {
+            let [a, b] = [spoke.out, spoke.back].map(|v| minus(self.known[v].cell, here));
+            for axis in 0..3 {
+                let (u, w) = ((axis + 1) % 3, (axis + 2) % 3);
+                n[axis] += a[u] * b[w] - a[w] * b[u];
+            }
+        }
+        // By the bits of the greatest component without its sign.
+        let widest = n.iter().fold(0, |all, x| all | x.unsigned_abs()).max(1).ilog2() + 1;
+        let n = n.map(|x| x >> widest.saturating_sub(24));
+        let main = (0..3).fold(0, |best, axis| if n[axis].abs() > n[best].abs() { axis } else { best });
+        let (first, second) = ((main + 1) % 3, (main + 2) % 3);
+        let wrap = |x: i64| i64::from(x as i32);
+        let mut cell = [0; 3];
+        for axis in [first, second] {
+            cell[axis] = wrap(mean[axis] + residual(symbols, &mut self.models.along, spread[axis]));
+        }
+        let expected = if n[main] == 0 {
+            mean[main]
+        } else {
+            let along = |axis: usize| n[axis] * (cell[axis] - here[axis]);
+            let (over, under) = (-along(first) - along(second), n[main]);
+            let (over, under) = if under < 0 { (-over, -under) } else { (over, under) };
+            wrap(here[main] + wrap((2 * over + under).div_euclid(2 * under)))
+        };
+        let heights: i64 = neighbours.iter().map(|&(v, _)| self.known[v].height).sum();
+        let height = residual(symbols, &mut self.models.heights, heights / k);
+        cell[main] = wrap(expected + height);
+        (cell, class(2 * height.abs() + 1) % 256)
+    }
+}
+
+/// PMESH-COD-10: a residual of that class.
+fn residual(symbols: &mut Symbols<'_>, models: &mut [Sixteen], class: i64) -> i64 {
+    let shift = (class / 4 - 5).max(0) as u32;
+    let context = if shift == 0 { class } else { 20 + class % 4 };
+    let size = match symbols.sixteen(&mut models[context as usize]) {
+        k @ 0..4 => k,
+        k @ 4..14 => ((2 + k % 2) << (k / 2 - 1)) + symbols.raw((k / 2 - 1) as u32),
+        14 => 128 + symbols.raw(7),
+        _ => {
+            let octave = symbols.raw(5).min(27) as u32;
+            (1 << octave) + symbols.raw(octave)
+        }
+    };
+    let low = symbols.raw(shift);
+    let negative = size != 0 && symbols.raw(1) == 1;
+    let whole = if negative { -size } else { size };
+    i64::from(((whole << shift) + low - (1i64 << shift) / 2) as i32)
+}
+
+/// PMESH-COD-08: the faces in their order, and whether they go round.
+fn ordered(ascending: &[Spoke]) -> (Vec<Spoke>, bool) {
+    if ascending.is_empty() || ascending.len() > 32 {
+        return (ascending.to_vec(), false);
+    }
+    let follow = |first: usize, left: &mut Vec<Spoke>| {
+        let mut chain = vec![left.remove(first)];
+        while let Some(next) = left.iter().position(|spoke| spoke.out == chain[chain.len() - 1].back) {
+            chain.push(left.remove(next));
+        }
+        chain
+    };
+    let mut left = ascending.to_vec();
+    let chain = follow(0, &mut left);
+    if left.is_empty() && chain.len() >= 2 && chain[chain.len() - 1].back == chain[0].out {
+        return (chain, true);
+    }
+    let mut left = ascending.to_vec();
+    let mut order = Vec::new();
+    for first in ascending {
+        let begins = !ascending.iter().any(|other| other.slot != first.slot && other.back == first.out);
+        if let (true, Some(at)) = (begins, left.iter().position(|spoke| spoke.slot == first.slot)) {
+            order.extend(follow(at, &mut left));
+        }
+    }
+    while !left.is_empty() {
+        order.extend(follow(0, &mut left));
+    }
+    (order, false)
+}
+
+/// PMESH-COD-09: the first face of the run, and how many.
+fn run(symbols: &mut Symbols<'_>, models: &mut Models, edges: &[i64]) -> (usize, usize) {
+    let m = edges.len();
+    if m == 2 {
+        return (usize::from(symbols.bit(&mut models.further[7])), 1);
+    }
+    let mean = logarithm(edges.iter().sum::<i64>() / m as i64);
+    let u: Vec<usize> =
+        edges.iter().map(|&e| ((logarithm(e) - mean).div_euclid(4) + 8).clamp(0, 15) as usize).collect();
+    let (after, before) = (|k: usize| (k + 1) % m, |k: usize| (k + m - 1) % m);
+    let mut ranked: Vec<usize> = (0..m).collect();
+    ranked.sort_by_key(|&k| (-edges[k], k));
+    if symbols.bit(&mut models.single[16 * (m.min(10) - 3) + u[ranked[0]]]) {
+        let mut faces: Vec<usize> = (0..m).collect();
+        faces.sort_by_key(|&k| (-(edges[k] + edges[after(k)]), k));
+        let mut rank = 0;
+        while rank + 1 < m && symbols.bit(&mut models.further[rank.min(6)]) {
+            rank += 1;
+        }
+        return (faces[rank], 1);
+    }
+    let mut outside = Vec::new();
+    let mut seed = ranked[m - 1];
+    for (rank, &k) in ranked[..m - 1].iter().enumerate() {
+        let model = 16 * (16 * rank.min(3) + u[k]) + u[before(k)].max(u[after(k)]);
+        if symbols.bit(&mut models.seed[model]) {
+            seed = k;
+            break;
+        }
+        outside.push(k);
+    }
+    let (mut low, mut high, mut n) = (seed, seed, 1);
+    let down_first = edges[before(seed)] >= edges[after(seed)];
+    for side in 0..2 {
+        let down = (side == 0) == down_first;
+        while n + 3 <= m {
+            let k = if down { before(low) } else { after(high) };
+            if outside.contains(&k) {
+                break;
+            }
+            let model = 16 * (8 * (2 * (n.min(4) - 1) + side) + (m - n).min(7)) + u[k];
+            if !symbols.bit(&mut models.extend[model]) {
+                break;
+            }
+            n += 1;
+            if down { low = k } else { high = k }
+        }
+    }
+    (before(low), n + 1)
+}
+
+/// PMESH-COD-11: cells and what they hold.
+struct Cells {
+    most: Cell,
+    /// Unit and first cell, with `f32`.
+    unit: Option<(f64, Cell)>,
+    bounds: [[f32; 3]; 2],
+}
+
+impl Cells {
+    fn new(header: &Header) -> Self {
+        let bounds = header.bounds;
+        if let Some(bits) = header.positions.bits() {
+            return Self { most: Lattice::new(bounds, bits).most, unit: None, bounds };
+        }
+        let greatest = bounds.as_flattened().iter().fold(0f32, |all, x| all.max(x.abs()));
+        // The step above a number, halved where it is the last of its octave; the same for all that are smaller than 2⁻¹²⁶.
+        let exponent =
+            if greatest < f32::MIN_POSITIVE { -126 } else { f64::from(greatest).log2().floor() as i32 };
+        let mut unit = 2f64.powi((exponent - 23).max(-149));
+        loop {
+            let [low, high] = bounds.map(|corner| corner.map(|x| (f64::from(x) / unit).floor() as i64));
+            let most = minus(high, low);
+            if most.iter().all(|&most| most < 1 << 20) {
+                return Self { most, unit: Some((unit, low)), bounds };
+            }
+            unit *= 2.0;
+        }
+    }
+
+    /// The bytes of a position in a raw packet.
+    fn position(&self, symbols: &mut Symbols<'_>, cell: Cell) -> Result<Vec<u8>, Fault> {
+        let Some((unit, low)) = self.unit else {
+            return Ok([cell[0], cell[1], cell[2], 0]
+                .iter()
+                .flat_map(|&q| (q as u16).to_le_bytes())
+                .collect());
+        };
+        let mut bytes = Vec::new();
+        for axis in 0..3 {
+            // Numbers in ascending order: 0 is the place of +0, −1 that of −0.
+            let place = |units: i64| {
+                let x = (units as f64 * unit) as f32;
+                let size = i64::from(x.abs().to_bits());
+                if units == 0 {
+                    -1
+                } else if x < 0.0 {
+                    -1 - size
+                } else {
+                    size
+                }
+            };
+            let units = low[axis] + cell[axis];
+            let (first, next) = (place(units), place(units + 1));
+            let most = (next - 1 - first).max(0);
+            let chosen = symbols.raw(bits(most));
+            let rank = first + chosen.min(most);
+            let number =
+                if rank < 0 { -f32::from_bits((-1 - rank) as u32) } else { f32::from_bits(rank as u32) };
+            if chosen > most || !(self.bounds[0][axis] <= number && number <= self.bounds[1][axis]) {
+                return fault(POSITION);
+            }
+            bytes.extend(number.to_le_bytes());
+        }
+        Ok(bytes)
+    }
+}
+
+impl Brought {
+    /// PMESH-PKT-02.
+    fn payload(self) -> Vec<u8> {
+        let word = |n: &usize| (*n as u32).to_le_bytes();
+        let mut out = self.positions;
+        out.extend(self.faces.as_flattened().iter().flat_map(word));
+        out.extend(self.parents.iter().flat_map(word));
+        for eight in self.codes.chunks(8) {
+            out.push(eight.iter().rev().fold(0, |byte, &code| 2 * byte + u8::from(code)));
+        }
+        out
+    }
+}
