@@ -75,9 +75,9 @@ impl Symbols<'_> {
     fn bit(&mut self, model: &mut Binary) -> bool {
         let value = ((self.x % (1 << 15)) as i64) < model.p;
         if value {
-            self.range(0, model.p)
+            self.range(0, model.p);
         } else {
-            self.range(model.p, (1 << 15) - model.p)
+            self.range(model.p, (1 << 15) - model.p);
         }
         let target = if value { (1 << 15) - 32 } else { 32 };
         model.p += ((target - model.p) * (655_360 / (10 * model.n + 16))).div_euclid(1 << 16);
@@ -498,9 +498,9 @@ impl Coded {
         let mut n = [0i64; 3];
         for (spoke, _) in spokes.iter().zip(switches).filter(|(_, switch)| **switch) {
             let [a, b] = [spoke.out, spoke.back].map(|v| minus(self.known[v].cell, here));
-            for axis in 0..3 {
+            for (axis, n) in n.iter_mut().enumerate() {
                 let (u, w) = ((axis + 1) % 3, (axis + 2) % 3);
-                n[axis] += a[u] * b[w] - a[w] * b[u];
+                *n += a[u] * b[w] - a[w] * b[u];
             }
         }
         // By the bits of the greatest component without its sign.
