@@ -1,9 +1,16 @@
 //! Packets of mode `coded`: `spec/pmesh.md`, section 8, turned into the payload of a raw packet that says the same.
 
-use super::Fault;
-use super::lattice::Lattice;
-use super::starts::{ALONG, HEIGHTS};
+mod cells;
+mod cut;
+mod symbols;
+
 use pmesh_format::{Header, PacketEntry};
+
+use super::Fault;
+use super::starts::{ALONG, HEIGHTS};
+use cells::Cells;
+use cut::{ordered, run};
+use symbols::{Binary, Sixteen, Symbols, residual};
 
 /// Codes of `spec/tables/errors.toml`; all are reported at byte 0 unless the text says otherwise.
 const POSITION: u16 = 501;
@@ -20,102 +27,6 @@ fn fault<T>(code: u16) -> Result<T, Fault> {
 }
 
 type Cell = [i64; 3];
-
-/// PMESH-COD-04: a choice of two.
-#[derive(Debug, Clone)]
-struct Binary {
-    p: i64,
-    n: i64,
-}
-
-/// PMESH-COD-04: one of 16.
-#[derive(Debug, Clone)]
-struct Sixteen {
-    starts: Vec<i64>,
-    n: i64,
-}
-
-impl Sixteen {
-    fn new(first: &[i64; 15]) -> Self {
-        Self { starts: [&[0], &first[..]].concat(), n: 0 }
-    }
-}
-
-/// PMESH-COD-02: the state and the words behind it.
-struct Symbols<'a> {
-    x: u64,
-    payload: &'a [u8],
-    at: usize,
-    missing: bool,
-}
-
-impl Symbols<'_> {
-    fn refill(&mut self) {
-        if self.x < 1 << 16 {
-            let word = match self.payload.get(self.at..self.at + 2) {
-                Some(word) => {
-                    self.at += 2;
-                    u64::from(word[0]) + 256 * u64::from(word[1])
-                }
-                None => {
-                    self.missing = true;
-                    0
-                }
-            };
-            self.x = (self.x << 16) + word;
-        }
-    }
-
-    fn range(&mut self, c: i64, f: i64) {
-        let low = self.x % (1 << 15);
-        self.x = f as u64 * (self.x >> 15) + low - c as u64;
-        self.refill();
-    }
-
-    fn bit(&mut self, model: &mut Binary) -> bool {
-        let value = ((self.x % (1 << 15)) as i64) < model.p;
-        if value {
-            self.range(0, model.p);
-        } else {
-            self.range(model.p, (1 << 15) - model.p);
-        }
-        let target = if value { (1 << 15) - 32 } else { 32 };
-        model.p += ((target - model.p) * (655_360 / (10 * model.n + 16))).div_euclid(1 << 16);
-        model.n = (model.n + 1).min(60);
-        value
-    }
-
-    fn sixteen(&mut self, model: &mut Sixteen) -> i64 {
-        let low = (self.x % (1 << 15)) as i64;
-        let k = (0..16).rev().find(|&k| model.starts[k] <= low).expect("the first start is 0");
-        let end = if k == 15 { 1 << 15 } else { model.starts[k + 1] };
-        self.range(model.starts[k], end - model.starts[k]);
-        let h = if model.n < 20 {
-            4
-        } else if model.n < 80 {
-            5
-        } else {
-            6
-        };
-        for i in 1..16 {
-            let target = if i <= k { 8 * i as i64 } else { (1 << 15) - 8 * (16 - i as i64) };
-            model.starts[i] += (target - model.starts[i]).div_euclid(1 << h);
-        }
-        model.n = (model.n + 1).min(80);
-        k as i64
-    }
-
-    fn raw(&mut self, bits: u32) -> i64 {
-        if bits > 16 {
-            let low = self.raw(16);
-            return low + (self.raw(bits - 16) << 16);
-        }
-        let value = self.x % (1 << bits);
-        self.x >>= bits;
-        self.refill();
-        value as i64
-    }
-}
 
 #[derive(Debug, Clone)]
 struct Models {
@@ -525,174 +436,6 @@ impl Coded {
         let height = residual(symbols, &mut self.models.heights, heights / k);
         cell[main] = wrap(expected + height);
         (cell, class(2 * height.abs() + 1) % 256)
-    }
-}
-
-/// PMESH-COD-10: a residual of that class.
-fn residual(symbols: &mut Symbols<'_>, models: &mut [Sixteen], class: i64) -> i64 {
-    let shift = (class / 4 - 5).max(0) as u32;
-    let context = if shift == 0 { class } else { 20 + class % 4 };
-    let size = match symbols.sixteen(&mut models[context as usize]) {
-        k @ 0..4 => k,
-        k @ 4..14 => ((2 + k % 2) << (k / 2 - 1)) + symbols.raw((k / 2 - 1) as u32),
-        14 => 128 + symbols.raw(7),
-        _ => {
-            let octave = symbols.raw(5).min(27) as u32;
-            (1 << octave) + symbols.raw(octave)
-        }
-    };
-    let low = symbols.raw(shift);
-    let negative = size != 0 && symbols.raw(1) == 1;
-    let whole = if negative { -size } else { size };
-    i64::from(((whole << shift) + low - (1i64 << shift) / 2) as i32)
-}
-
-/// PMESH-COD-08: the faces in their order, and whether they go round.
-fn ordered(ascending: &[Spoke]) -> (Vec<Spoke>, bool) {
-    if ascending.is_empty() || ascending.len() > 32 {
-        return (ascending.to_vec(), false);
-    }
-    let follow = |first: usize, left: &mut Vec<Spoke>| {
-        let mut chain = vec![left.remove(first)];
-        while let Some(next) = left.iter().position(|spoke| spoke.out == chain[chain.len() - 1].back) {
-            chain.push(left.remove(next));
-        }
-        chain
-    };
-    let mut left = ascending.to_vec();
-    let chain = follow(0, &mut left);
-    if left.is_empty() && chain.len() >= 2 && chain[chain.len() - 1].back == chain[0].out {
-        return (chain, true);
-    }
-    let mut left = ascending.to_vec();
-    let mut order = Vec::new();
-    for first in ascending {
-        let begins = !ascending.iter().any(|other| other.slot != first.slot && other.back == first.out);
-        if let (true, Some(at)) = (begins, left.iter().position(|spoke| spoke.slot == first.slot)) {
-            order.extend(follow(at, &mut left));
-        }
-    }
-    while !left.is_empty() {
-        order.extend(follow(0, &mut left));
-    }
-    (order, false)
-}
-
-/// PMESH-COD-09: the first face of the run, and how many.
-fn run(symbols: &mut Symbols<'_>, models: &mut Models, edges: &[i64]) -> (usize, usize) {
-    let m = edges.len();
-    if m == 2 {
-        return (usize::from(symbols.bit(&mut models.further[7])), 1);
-    }
-    let mean = logarithm(edges.iter().sum::<i64>() / m as i64);
-    let u: Vec<usize> =
-        edges.iter().map(|&e| ((logarithm(e) - mean).div_euclid(4) + 8).clamp(0, 15) as usize).collect();
-    let (after, before) = (|k: usize| (k + 1) % m, |k: usize| (k + m - 1) % m);
-    let mut ranked: Vec<usize> = (0..m).collect();
-    ranked.sort_by_key(|&k| (-edges[k], k));
-    if symbols.bit(&mut models.single[16 * (m.min(10) - 3) + u[ranked[0]]]) {
-        let mut faces: Vec<usize> = (0..m).collect();
-        faces.sort_by_key(|&k| (-(edges[k] + edges[after(k)]), k));
-        let mut rank = 0;
-        while rank + 1 < m && symbols.bit(&mut models.further[rank.min(6)]) {
-            rank += 1;
-        }
-        return (faces[rank], 1);
-    }
-    let mut outside = Vec::new();
-    let mut seed = ranked[m - 1];
-    for (rank, &k) in ranked[..m - 1].iter().enumerate() {
-        let model = 16 * (16 * rank.min(3) + u[k]) + u[before(k)].max(u[after(k)]);
-        if symbols.bit(&mut models.seed[model]) {
-            seed = k;
-            break;
-        }
-        outside.push(k);
-    }
-    let (mut low, mut high, mut n) = (seed, seed, 1);
-    let down_first = edges[before(seed)] >= edges[after(seed)];
-    for side in 0..2 {
-        let down = (side == 0) == down_first;
-        while n + 3 <= m {
-            let k = if down { before(low) } else { after(high) };
-            if outside.contains(&k) {
-                break;
-            }
-            let model = 16 * (8 * (2 * (n.min(4) - 1) + side) + (m - n).min(7)) + u[k];
-            if !symbols.bit(&mut models.extend[model]) {
-                break;
-            }
-            n += 1;
-            if down { low = k } else { high = k }
-        }
-    }
-    (before(low), n + 1)
-}
-
-/// PMESH-COD-11: cells and what they hold.
-struct Cells {
-    most: Cell,
-    /// Unit and first cell, with `f32`.
-    unit: Option<(f64, Cell)>,
-    bounds: [[f32; 3]; 2],
-}
-
-impl Cells {
-    fn new(header: &Header) -> Self {
-        let bounds = header.bounds;
-        if let Some(bits) = header.positions.bits() {
-            return Self { most: Lattice::new(bounds, bits).most, unit: None, bounds };
-        }
-        let greatest = bounds.as_flattened().iter().fold(0f32, |all, x| all.max(x.abs()));
-        // The step above a number, halved where it is the last of its octave; the same for all that are smaller than 2⁻¹²⁶.
-        let exponent =
-            if greatest < f32::MIN_POSITIVE { -126 } else { f64::from(greatest).log2().floor() as i32 };
-        let mut unit = 2f64.powi((exponent - 23).max(-149));
-        loop {
-            let [low, high] = bounds.map(|corner| corner.map(|x| (f64::from(x) / unit).floor() as i64));
-            let most = minus(high, low);
-            if most.iter().all(|&most| most < 1 << 20) {
-                return Self { most, unit: Some((unit, low)), bounds };
-            }
-            unit *= 2.0;
-        }
-    }
-
-    /// The bytes of a position in a raw packet.
-    fn position(&self, symbols: &mut Symbols<'_>, cell: Cell) -> Result<Vec<u8>, Fault> {
-        let Some((unit, low)) = self.unit else {
-            return Ok([cell[0], cell[1], cell[2], 0]
-                .iter()
-                .flat_map(|&q| (q as u16).to_le_bytes())
-                .collect());
-        };
-        let mut bytes = Vec::new();
-        for axis in 0..3 {
-            // Numbers in ascending order: 0 is the place of +0, −1 that of −0.
-            let place = |units: i64| {
-                let x = (units as f64 * unit) as f32;
-                let size = i64::from(x.abs().to_bits());
-                if units == 0 {
-                    -1
-                } else if x < 0.0 {
-                    -1 - size
-                } else {
-                    size
-                }
-            };
-            let units = low[axis] + cell[axis];
-            let (first, next) = (place(units), place(units + 1));
-            let most = (next - 1 - first).max(0);
-            let chosen = symbols.raw(bits(most));
-            let rank = first + chosen.min(most);
-            let number =
-                if rank < 0 { -f32::from_bits((-1 - rank) as u32) } else { f32::from_bits(rank as u32) };
-            if chosen > most || !(self.bounds[0][axis] <= number && number <= self.bounds[1][axis]) {
-                return fault(POSITION);
-            }
-            bytes.extend(number.to_le_bytes());
-        }
-        Ok(bytes)
     }
 }
 
