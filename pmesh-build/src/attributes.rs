@@ -105,7 +105,8 @@ impl<'a> Deviations<'a> {
         for (&(gradient, constant), &value) in courses.iter().zip(values) {
             sum += value * (value * self.squares[w].area() - 2.0 * (gradient.dot(p) + constant));
         }
-        sum.max(0.0).min(f64::MAX)
+        // Rounding may make it negative, coordinates near the greatest f32 infinite or NaN.
+        if sum > 0.0 { sum.min(f64::MAX) } else { 0.0 }
     }
 
     /// The deviation of what the wedges of `v` stand for.
