@@ -21,6 +21,7 @@ mod priors;
 mod rans;
 mod ring;
 mod save;
+mod split;
 mod walk;
 
 pub(crate) use order::arranged;
@@ -42,17 +43,33 @@ pub(crate) fn least_bytes(start: u32, vertices: u32, faces: u32) -> u64 {
     4 + (u64::from(vertices) + u64::from(faces)) / 4 + u64::from(start) / 64
 }
 
-/// What is remembered of a vertex for contexts (PMESH-COD-05).
+/// A vertex as its neighbours see it (PMESH-COD-05): the cell, then its class of height × 2¹⁶ + its scale. Together, since
+/// both are looked at wherever a neighbour is, and so that sums of all four are sums of each.
+type Point = [i32; 4];
+
+/// The cell of a vertex.
+#[inline(always)]
+fn cell_of([x, y, z, _]: Point) -> Cell {
+    [x, y, z]
+}
+
+/// What is remembered of a vertex for contexts and changes when it is split (PMESH-COD-05).
 #[derive(Clone, Copy, Debug, Default)]
 struct Shape {
     /// Octave of its distance from its neighbours.
     scale: u8,
     /// Class of its height above the plane that it was expected in.
     height: u8,
-    /// Whether it has been split.
-    split: bool,
-    /// The packet that brought it, or the last one that split it.
-    packet: u32,
+    /// 2 × the packet that brought it, or the last one that split it, + 1 if it has been split.
+    history: u32,
+}
+
+impl Shape {
+    /// As it stands in a [`Point`].
+    #[inline(always)]
+    fn packed(self) -> i32 {
+        i32::from(self.height) << 16 | i32::from(self.scale)
+    }
 }
 
 /// Everything that is learnt.
@@ -98,8 +115,9 @@ pub(crate) struct State {
     packets: u32,
     corners: Vec<[u32; 3]>,
     slots: Slots,
-    cells: Vec<Cell>,
-    shapes: Vec<Shape>,
+    points: Vec<Point>,
+    /// [`Shape::history`] of each vertex.
+    histories: Vec<u32>,
     parents: Vec<u32>,
     /// Faces with each vertex from the base on.
     face_ends: Vec<u32>,
@@ -133,8 +151,8 @@ impl State {
             packets: 0,
             corners: Vec::new(),
             slots: Slots::default(),
-            cells: Vec::new(),
-            shapes: Vec::new(),
+            points: Vec::new(),
+            histories: Vec::new(),
             parents: Vec::new(),
             face_ends: Vec::new(),
             base,
@@ -159,12 +177,32 @@ impl State {
         }
         self.pop_faces(extent.faces.start);
         for &(vertex, shape) in changes.shapes.iter().rev() {
-            self.shapes[vertex as usize] = shape;
+            self.set_shape(vertex, shape);
         }
         let start = extent.vertices.start as usize;
-        self.cells.truncate(start);
-        self.shapes.truncate(start);
+        self.points.truncate(start);
+        self.histories.truncate(start);
         self.slots.resize(start, usize::MAX);
+    }
+
+    /// What is remembered of a vertex.
+    #[inline(always)]
+    fn shape(&self, vertex: u32) -> Shape {
+        let [.., packed] = self.points[vertex as usize];
+        Shape { scale: packed as u8, height: (packed >> 16) as u8, history: self.histories[vertex as usize] }
+    }
+
+    #[inline(always)]
+    fn set_shape(&mut self, vertex: u32, shape: Shape) {
+        self.points[vertex as usize][3] = shape.packed();
+        self.histories[vertex as usize] = shape.history;
+    }
+
+    /// A new vertex.
+    #[inline(always)]
+    fn push_vertex(&mut self, [x, y, z]: Cell, shape: Shape) {
+        self.points.push([x, y, z, shape.packed()]);
+        self.histories.push(shape.history);
     }
 
     /// Takes faces away until there are that many.

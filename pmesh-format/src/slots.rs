@@ -36,7 +36,17 @@ impl Slots {
         resize(&mut self.blocks, vertices, total, [0; BLOCK]);
     }
 
+    /// How many slots `vertex` has.
+    #[inline]
+    pub(crate) fn count(&self, vertex: u32) -> usize {
+        match self.lens[vertex as usize] {
+            POOLED => self.blocks[vertex as usize][1] as usize,
+            len => usize::from(len),
+        }
+    }
+
     /// The slots of `vertex`, ascending.
+    #[inline]
     pub(crate) fn of(&self, vertex: u32) -> &[u32] {
         let block = &self.blocks[vertex as usize];
         match self.lens[vertex as usize] {

@@ -1,9 +1,9 @@
 //! Which faces of the parent switch to the new vertex, where they go round and it takes a run of them (PMESH-COD-09).
 
-use super::geometry::logarithm;
+use super::geometry::{divide, logarithm};
 use super::models::Binary;
 use super::rans::Coder;
-use super::ring::MOST;
+use super::ring::FEW;
 
 /// The models of a cut.
 #[derive(Clone, Debug)]
@@ -36,58 +36,52 @@ impl Cuts {
         }
     }
 
-    /// A run of some but not all of at least two faces. `lengths`: the squared length of the edge at which each face begins.
+    /// A run of some but not all of at least two faces. `lengths`: the squared length of the edge at which each of the `count`
+    /// faces begins, then zeros.
     #[inline(always)]
-    pub(super) fn code<C: Coder>(&mut self, coder: &mut C, lengths: &[u64], run: Run) -> Run {
-        let count = lengths.len();
+    pub(super) fn code<C: Coder, const N: usize>(
+        &mut self,
+        coder: &mut C,
+        lengths: &[u64; N],
+        count: usize,
+        run: Run,
+    ) -> Run {
         let wrap = |k: usize| if k >= count { k - count } else { k };
+        let length = |k: usize| lengths[k & (N - 1)];
         if count == 2 {
             let second = coder.bit(&mut self.further[7], run.first == 1);
             return Run { first: usize::from(second), count: 1 };
         }
-        let mean = logarithm(lengths.iter().sum::<u64>() / count as u64) as i32;
-        let mut steps = [0u8; MOST];
-        for (step, &length) in steps.iter_mut().zip(lengths) {
-            *step = (((logarithm(length) as i32 - mean) >> 2) + 8).clamp(0, 15) as u8;
-        }
-        let step = |k: usize| usize::from(steps[k & (MOST - 1)]);
-        // Edges by descending length, equal ones by place.
-        let mut by_length = [0u8; MOST];
-        for k in 0..count {
-            let mut at = k;
-            while at > 0 && lengths[usize::from(by_length[at - 1])] < lengths[k] {
-                by_length[at] = by_length[at - 1];
-                at -= 1;
-            }
-            by_length[at] = k as u8;
-        }
-        let ranked = |rank: usize| usize::from(by_length[rank & (MOST - 1)]);
+        let all = if N == FEW { lengths.iter().sum() } else { lengths[..count].iter().sum() };
+        let mean = logarithm(divide(all, count as u32)) as i32;
+        let step = |k: usize| (((logarithm(length(k)) as i32 - mean) >> 2) + 8).clamp(0, 15) as usize;
+        // Edges by descending length, equal ones by place: looked for one by one, since the first few are enough.
+        let mut ranking = Ranking::<N>::new(count, length);
+        let mut k = ranking.next();
         let faces = count.min(10) - 3;
         // Whether the edge at which a face begins lies inside the run.
         let inside = |k: usize| {
             let from = wrap(k + count - run.first.min(count));
             from >= 1 && from < run.count
         };
-        if coder.bit(&mut self.single[faces * 16 + step(ranked(0))], run.count == 1) {
-            return self.single(coder, lengths, run.first);
+        if coder.bit(&mut self.single[faces * 16 + step(k)], run.count == 1) {
+            let around = Ranking::<N>::new(count, |k| length(k) + length(wrap(k + 1)));
+            return self.single(coder, around, count, run.first);
         }
         let mut skipped = 0u32;
         let mut rank = 0;
-        let seed = loop {
-            let k = ranked(rank);
-            if rank + 1 == count {
-                break k;
-            }
+        while rank + 1 < count {
             let beside = step(wrap(k + 1)).max(step(wrap(k + count - 1)));
             let model = &mut self.seed[(rank.min(3) * 16 + step(k)) * 16 + beside];
             if coder.bit(model, inside(k)) {
-                break k;
+                break;
             }
             skipped |= 1 << k;
             rank += 1;
-        };
-        let (mut low, mut high, mut inner) = (seed, seed, 1usize);
-        let left_first = lengths[wrap(seed + count - 1)] >= lengths[wrap(seed + 1)];
+            k = ranking.next();
+        }
+        let (mut low, mut high, mut inner) = (k, k, 1usize);
+        let left_first = length(wrap(k + count - 1)) >= length(wrap(k + 1));
         for side in 0..2 {
             let left = (side == 0) == left_first;
             while inner + 3 <= count {
@@ -107,19 +101,46 @@ impl Cuts {
     }
 
     /// One face: the place among all by the descending length of the edges beside it.
-    fn single<C: Coder>(&mut self, coder: &mut C, lengths: &[u64], first: usize) -> Run {
-        let count = lengths.len();
-        let mut faces: [u8; MOST] = core::array::from_fn(|k| k as u8);
-        let around = |k: u8| {
-            let k = usize::from(k);
-            lengths[k] + lengths[if k + 1 == count { 0 } else { k + 1 }]
-        };
-        faces[..count].sort_by_key(|&k| core::cmp::Reverse(around(k)));
+    #[inline(always)]
+    fn single<C: Coder, const N: usize>(
+        &mut self,
+        coder: &mut C,
+        mut ranking: Ranking<N>,
+        count: usize,
+        first: usize,
+    ) -> Run {
         let mut rank = 0;
-        while rank + 1 < count && coder.bit(&mut self.further[rank.min(6)], usize::from(faces[rank]) != first)
-        {
+        let mut face = ranking.next();
+        while rank + 1 < count && coder.bit(&mut self.further[rank.min(6)], face != first) {
             rank += 1;
+            face = ranking.next();
         }
-        Run { first: faces[rank].into(), count: 1 }
+        Run { first: face, count: 1 }
+    }
+}
+
+/// Places by descending length, equal ones ascending.
+struct Ranking<const N: usize> {
+    /// Length × 64 + 63 − place; 0 for those that have been named and those that do not exist.
+    keys: [u64; N],
+}
+
+impl<const N: usize> Ranking<N> {
+    #[inline(always)]
+    fn new(count: usize, length: impl Fn(usize) -> u64) -> Self {
+        let mut keys = [0; N];
+        for (k, key) in keys.iter_mut().enumerate().take(if N == FEW { N } else { count }) {
+            *key = if k < count { length(k) << 6 | (63 - k as u64) } else { 0 };
+        }
+        Self { keys }
+    }
+
+    /// The next place.
+    #[inline(always)]
+    fn next(&mut self) -> usize {
+        let most = self.keys.iter().fold(0, |most, &key| most.max(key));
+        let place = 63 - (most & 63) as usize;
+        self.keys[place & (N - 1)] = 0;
+        place
     }
 }

@@ -1,8 +1,10 @@
 //! Where the next vertex is, in whole numbers: predictions, and how far from them (PMESH-COD-10).
 
+use super::Point;
 use super::models::Symbols;
 use super::priors::{HEIGHTS, SPREADS};
 use super::rans::Coder;
+use super::ring::MOST;
 
 /// A point of the lattice, or the difference of two.
 pub(super) type Cell = [i32; 3];
@@ -39,6 +41,33 @@ pub(super) fn logarithm(x: u64) -> u32 {
     let x = x.max(1);
     let octave = x.ilog2();
     8 * octave + ((x << 3 >> octave) & 7) as u32
+}
+
+/// Numbers that [`divide`] divides by without dividing, and one more.
+const DIVISORS: usize = 2 * MOST + 8;
+
+/// ⌊2⁶⁴ / m⌋ + 1, or 2⁶⁴ / m where that is whole.
+const RECIPROCALS: [u64; DIVISORS] = {
+    let mut reciprocals = [0; DIVISORS];
+    let mut m = 2;
+    while m < DIVISORS {
+        reciprocals[m] = u64::MAX / m as u64 + 1;
+        m += 1;
+    }
+    reciprocals
+};
+
+/// ⌊x / m⌋ for m from 1 on and x < 2⁵⁰.
+///
+/// The reciprocal of n = 2 m, n < 2⁷, is too great by less than n / 2⁶⁴ of one, so that 2 x times it is too great by less than
+/// 2 x n / 2⁶⁴ < 2⁵⁸ / 2⁶⁴ of one, which is less than the 1 / n that a fraction is short of the next whole number.
+#[inline(always)]
+pub(super) fn divide(x: u64, m: u32) -> u64 {
+    debug_assert!(x < 1 << 50 && m > 0, "{x} / {m}");
+    match RECIPROCALS.get(2 * m as usize) {
+        Some(&reciprocal) => ((u128::from(2 * x) * u128::from(reciprocal)) >> 64) as u64,
+        None => x / u64::from(m),
+    }
 }
 
 #[inline(always)]
@@ -89,23 +118,35 @@ pub(super) fn residual<C: Coder>(
         128..256 => (14, 7),
         _ => (15, size.ilog2()),
     };
-    let symbol = coder.symbol(&mut models[context], symbol as usize) as u32;
+    let symbol = coder.symbol(&mut models[context], symbol as usize);
     // For the reader, what the symbol says; the writer's numbers are the same.
-    let (first, extra) = match symbol {
-        0..4 => (symbol, 0),
-        4..14 => ((2 + symbol % 2) << (symbol / 2 - 1), symbol / 2 - 1),
-        14 => (128, 7),
-        _ => {
-            let octave = coder.raw(5, extra).min(27);
-            (1 << octave, octave)
-        }
-    };
-    let size_is = first + if extra > 0 { raw(coder, extra, size.wrapping_sub(first)) } else { 0 };
-    let low = if shift > 0 { raw(coder, shift, low) } else { 0 };
-    let negative = size_is > 0 && coder.raw(1, u32::from(whole < 0)) == 1;
+    let (mut first, mut extra_is) = FIRSTS[symbol & 15];
+    if symbol == 15 {
+        extra_is = coder.raw(5, extra).min(27);
+        first = 1 << extra_is;
+    }
+    // Raw numbers of no bits are none: nothing branches on whether there are any.
+    let size_is = first + raw(coder, extra_is, size.wrapping_sub(first));
+    let low = raw(coder, shift, low);
+    let negative = coder.raw(u32::from(size_is > 0), u32::from(whole < 0 && size > 0)) == 1;
     let whole = if negative { -i64::from(size_is) } else { i64::from(size_is) };
     ((whole << shift) + i64::from(low) - half) as i32
 }
+
+/// The least size of each symbol but the last, and how many bits follow it.
+const FIRSTS: [(u32, u32); 16] = {
+    let mut firsts = [(0, 0); 16];
+    let mut symbol = 0;
+    while symbol < 15 {
+        firsts[symbol as usize] = match symbol {
+            0..4 => (symbol, 0),
+            4..14 => ((2 + symbol % 2) << (symbol / 2 - 1), symbol / 2 - 1),
+            _ => (128, 7),
+        };
+        symbol += 1;
+    }
+    firsts
+};
 
 /// What is known of the place of a new vertex.
 #[derive(Clone, Copy, Debug)]
@@ -122,20 +163,20 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// From the neighbours, the parent one of them, the normal of the faces that switch, and the mean of the neighbours' own
-    /// classes of heights. `coarse`: by how many bits spreads are shortened.
+    /// From the neighbours, the parent one of them, their sum, and the normal of the faces that switch.
     #[inline(always)]
-    pub(super) fn new(neighbours: &[Cell], parent: Cell, normal: [i64; 3], height: u32) -> Self {
-        let count = neighbours.len().max(1) as i64;
-        let mut mean = parent;
-        for (k, mean) in mean.iter_mut().enumerate() {
-            let sum: i64 = neighbours.iter().map(|n| i64::from(n[k])).sum();
-            *mean = (2 * sum + count).div_euclid(2 * count) as i32;
-        }
-        let spreads = core::array::from_fn(|k| {
-            let sum: u64 = neighbours.iter().map(|n| u64::from(n[k].abs_diff(mean[k]))).sum();
-            class(8 * sum / count as u64 + 1)
+    pub(super) fn new(neighbours: &[Point], sum: Point, parent: Cell, normal: [i64; 3]) -> Self {
+        let count = neighbours.len().max(1) as u32;
+        // Cells that are there are not negative.
+        let mean: Cell = core::array::from_fn(|k| {
+            divide(2 * u64::from(sum[k] as u32) + u64::from(count), 2 * count) as i32
         });
+        let mut apart = [0u32; 3];
+        for neighbour in neighbours {
+            apart.iter_mut().zip(neighbour).zip(mean).for_each(|((sum, x), mean)| *sum += x.abs_diff(mean));
+        }
+        let spreads = apart.map(|sum| class(divide(8 * u64::from(sum), count) + 1));
+        let height = divide((sum[3] >> 16) as u64, count) as u32;
         // At most 24 bits are left of each component, so that every product below fits in 53.
         let bits = normal.iter().fold(0, |all, n| all | n.unsigned_abs()).max(1).ilog2() + 1;
         let normal = normal.map(|n| n >> bits.saturating_sub(24));

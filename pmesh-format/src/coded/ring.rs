@@ -3,6 +3,9 @@
 /// The most faces that are put in order.
 pub(super) const MOST: usize = 32;
 
+/// So many faces have a faster way: a power of two, and as many as [`Slots::SHORT`](crate::slots::Slots::SHORT).
+pub(super) const FEW: usize = 8;
+
 /// A face at a vertex: the vertices that follow it in the face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Spoke {
@@ -16,7 +19,6 @@ pub(super) struct Spoke {
 
 /// Puts up to [`MOST`] faces, which stand in canonical order, in order, each behind one that it shares an edge with as long as
 /// there is one; true if they go round once, the last beside the first.
-#[inline(always)]
 pub(super) fn order(spokes: &mut [Spoke; MOST], count: usize) -> bool {
     let mut ordered = [spokes[0]; MOST];
     let mut left = u32::MAX.unbounded_shr((MOST - count) as u32) & !1;
@@ -41,6 +43,28 @@ pub(super) fn order(spokes: &mut [Spoke; MOST], count: usize) -> bool {
     }
     *spokes = ordered;
     true
+}
+
+/// Whether up to [`FEW`] faces go round once; where each is then among those given, in order, four bits each. Behind the last
+/// one `outs` has numbers that no vertex has. `None` is no answer: each face knows one that follows it, but not the one.
+#[inline(always)]
+pub(super) fn round_few(outs: &[u32; FEW], backs: &[u32; FEW], count: usize) -> Option<u32> {
+    let mut followers = 0u32;
+    for (k, &back) in backs.iter().enumerate() {
+        let beside =
+            outs.iter().enumerate().fold(0, |beside, (j, &out)| beside | u32::from(out == back) << j);
+        followers |= (beside | 1 << FEW).trailing_zeros() << (4 * k);
+    }
+    let (mut order, mut at, mut seen) = (0, 0, 1u32);
+    for k in 1..count {
+        at = followers >> (4 * at) & 15;
+        if seen >> at & 1 == 1 || at as usize >= FEW {
+            return None;
+        }
+        seen |= 1 << at;
+        order |= at << (4 * k);
+    }
+    (count >= 2 && backs[at as usize & (FEW - 1)] == outs[0]).then_some(order)
 }
 
 /// Where faces do not go round: first those fans that have a beginning, by the place of their first face, then what is left.

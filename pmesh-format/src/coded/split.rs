@@ -1,0 +1,450 @@
+//! A vertex comes: which faces of its parent it takes, which it brings, where it is (PMESH-COD-08 to -11).
+
+use alloc::vec::Vec;
+
+use super::cut::Run;
+use super::geometry::{Cell, Place, cross, difference, divide, raw, squared};
+use super::rans::Coder;
+use super::ring::{FEW, MOST, Spoke, order, round_few};
+use super::walk::{Bounds, Source};
+use super::{Changes, Fault, LENGTH, Point, SLOTS_A_BYTE, Shape, State, cell_of};
+use crate::code::codes;
+use crate::header::PacketEntry;
+use crate::slots::Slots;
+
+/// What is given with a step of the walk.
+#[derive(Clone, Copy)]
+pub(super) struct Step<'a, S> {
+    pub(super) source: &'a S,
+    pub(super) extent: &'a PacketEntry,
+    pub(super) bounds: &'a Bounds,
+    pub(super) vertex: u32,
+    pub(super) parent: u32,
+}
+
+/// Which of the parent's faces switch.
+enum Moved<'a> {
+    /// A bit for each slot, the first in bit 0; of [`MOST`] at most.
+    Mask(u32),
+    /// An entry for each slot.
+    Long(&'a [bool]),
+}
+
+/// The neighbours of a new vertex that are looked at: the parent first.
+struct Neighbours<const N: usize> {
+    points: [Point; N],
+    count: usize,
+    sum: Point,
+    /// The sum of the squares of their distances from the parent.
+    squares: u64,
+    /// The sum of the normals of the faces that switch.
+    normal: [i64; 3],
+}
+
+impl<const N: usize> Neighbours<N> {
+    #[inline(always)]
+    fn new(parent: Point) -> Self {
+        let mut points = [[0; 4]; N];
+        points[0] = parent;
+        Self { points, count: 1, sum: parent, squares: 0, normal: [0; 3] }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, point: Point, square: u64) {
+        if let Some(to) = self.points.get_mut(self.count) {
+            *to = point;
+            self.count += 1;
+            self.sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += x);
+            self.squares += square;
+        }
+    }
+
+    /// Adds a face, by the edges from the parent.
+    #[inline(always)]
+    fn turn(&mut self, a: [i64; 3], b: [i64; 3]) {
+        self.normal.iter_mut().zip(cross(a, b)).for_each(|(sum, x)| *sum += x);
+    }
+
+    fn known(&self) -> &[Point] {
+        &self.points[..self.count.min(N)]
+    }
+}
+
+impl State {
+    /// A vertex: which slots of its parent switch, which faces come, where it is.
+    #[inline(always)]
+    pub(super) fn code_split<C: Coder, S: Source>(
+        &mut self,
+        coder: &mut C,
+        step: Step<'_, S>,
+        changes: &mut Changes,
+    ) -> Result<(), Fault> {
+        let count = self.slots.count(step.parent);
+        changes.looked_at += count as u64;
+        if changes.looked_at > step.bounds.bytes.saturating_mul(SLOTS_A_BYTE) {
+            return Err((codes::CODED_WORK, 0));
+        }
+        match count {
+            2..=FEW => self.code_few(coder, step, changes, count),
+            _ => self.code_many(coder, step, changes),
+        }
+    }
+
+    /// The vertices that follow the parent in the face of a slot.
+    #[inline(always)]
+    fn beside(&self, slot: u32) -> [u32; 2] {
+        let corners = self.corners.as_flattened();
+        let slot = slot as usize;
+        let corner = slot % 3;
+        [
+            corners[if corner == 2 { slot - 2 } else { slot + 1 }],
+            corners[if corner == 0 { slot + 2 } else { slot - 1 }],
+        ]
+    }
+
+    /// With so few faces that none of the steps needs to know how many exactly.
+    #[inline(always)]
+    fn code_few<C: Coder, S: Source>(
+        &mut self,
+        coder: &mut C,
+        step: Step<'_, S>,
+        changes: &mut Changes,
+        count: usize,
+    ) -> Result<(), Fault> {
+        let list = self.slots.of(step.parent);
+        // What is left over are copies of the first slot, whose face nothing follows.
+        let (mut outs, mut backs) = ([u32::MAX; FEW], [0; FEW]);
+        for k in 0..FEW {
+            let [out, back] = self.beside(list[if k < list.len() { k } else { 0 }]);
+            outs[k] = if k < count { out } else { u32::MAX };
+            backs[k] = back;
+        }
+        let Some(order) = round_few(&outs, &backs, count) else {
+            return self.code_many(coder, step, changes);
+        };
+        let mut ring = [0; FEW];
+        for (k, to) in ring.iter_mut().enumerate() {
+            let at = if k < count { order >> (4 * k) & 7 } else { order & 7 };
+            *to = outs[at as usize];
+        }
+        let place = |k: usize| order >> (4 * k) & 7;
+        self.code_ring::<_, _, FEW, { FEW + 2 }>(coder, step, changes, &ring, count, place)
+    }
+
+    /// Where faces go round: whether the split is regular, and if so, all of it. `ring`: the out of each face in order, then any
+    /// vertex that there is; `M`: the most neighbours; `place`: where the slot of each stands among those of the parent.
+    #[inline(always)]
+    fn code_ring<C: Coder, S: Source, const N: usize, const M: usize>(
+        &mut self,
+        coder: &mut C,
+        step: Step<'_, S>,
+        changes: &mut Changes,
+        ring: &[u32; N],
+        count: usize,
+        place: impl Fn(usize) -> u32,
+    ) -> Result<(), Fault> {
+        let Step { source, extent, vertex, parent, .. } = step;
+        let from = self.points[parent as usize];
+        let here = cell_of(from);
+        let mut points = [from; N];
+        let mut edges = [[0i64; 3]; N];
+        let mut lengths = [0u64; N];
+        for k in 0..if N == FEW { N } else { count } {
+            points[k] = self.points[ring[k] as usize];
+            edges[k] = difference(cell_of(points[k]), here);
+            lengths[k] = if k < count { squared(edges[k]) } else { 0 };
+        }
+        let wrap = |k: usize| if k >= count { k - count } else { k };
+        let switch = |k: usize| source.switches(vertex, place(k), count as u32);
+        let found = (0..count).find(|&k| switch(k) && !switch(if k == 0 { count - 1 } else { k - 1 }));
+        let length = (0..count).filter(|&k| switch(k)).count();
+        let given = Run { first: found.unwrap_or(0), count: length };
+        let out = |k: usize| ring[k & (N - 1)];
+        let end = out(wrap(given.first + given.count.min(count)));
+        let regular = found.is_some()
+            && is_regular(given, count, switch)
+            && source
+                .faces(Some(vertex))
+                .iter()
+                .map(|face| face.1)
+                .eq([[parent, out(given.first), vertex], [parent, vertex, end]]);
+        if !coder.bit(&mut self.models.regular, regular) {
+            return self.code_irregular(coder, step, changes, true);
+        }
+        let run = self.models.cuts.code(coder, &lengths, count, given);
+        if self.corners.len() + 2 > extent.faces.end as usize {
+            return Err((codes::CODED_FACES, 0));
+        }
+        let mut neighbours = Neighbours::<M>::new(from);
+        let (mut moved, mut inner) = (0u32, 0);
+        let mut k = run.first & (N - 1);
+        neighbours.add(points[k], lengths[k]);
+        for nth in 0..run.count {
+            moved |= 1 << place(k);
+            inner += if nth > 0 { lengths[k] } else { 0 };
+            let next = wrap(k + 1) & (N - 1);
+            neighbours.turn(edges[k], edges[next]);
+            neighbours.add(points[next], lengths[next]);
+            k = next;
+        }
+        let all = lengths.iter().sum::<u64>();
+        let edges_left = (count + 2 - run.count) as u32;
+        let cell = self.code_cell(coder, step, changes, &neighbours, all - inner, edges_left)?;
+        self.take(step, count, Moved::Mask(moved), changes);
+        self.introduce([parent, out(run.first), vertex], changes);
+        self.introduce([parent, vertex, out(k)], changes);
+        self.arrive(cell);
+        Ok(())
+    }
+
+    /// With any number of faces.
+    #[inline(never)]
+    fn code_many<C: Coder, S: Source>(
+        &mut self,
+        coder: &mut C,
+        step: Step<'_, S>,
+        changes: &mut Changes,
+    ) -> Result<(), Fault> {
+        let count = self.slots.count(step.parent);
+        if count > MOST {
+            return self.code_irregular(coder, step, changes, false);
+        }
+        let mut spokes = [Spoke::default(); MOST];
+        self.spokes(step.parent, &mut spokes);
+        if !order(&mut spokes, count) {
+            return self.code_irregular(coder, step, changes, false);
+        }
+        let mut ring = [step.parent; MOST];
+        ring.iter_mut().zip(&spokes[..count]).for_each(|(to, spoke)| *to = spoke.out);
+        let place = |k: usize| spokes[k & (MOST - 1)].place;
+        self.code_ring::<_, _, MOST, MOST_KNOWN>(coder, step, changes, &ring, count, place)
+    }
+
+    /// The faces of a vertex, as its slots stand.
+    fn spokes(&self, vertex: u32, to: &mut [Spoke]) {
+        for ((place, &slot), to) in (0..).zip(self.slots.of(vertex)).zip(to) {
+            let [out, back] = self.beside(slot);
+            *to = Spoke { place, out, back };
+        }
+    }
+
+    /// With faces that do not go round, or other ones that switch, or others that come.
+    #[cold]
+    #[inline(never)]
+    fn code_irregular<C: Coder, S: Source>(
+        &mut self,
+        coder: &mut C,
+        step: Step<'_, S>,
+        changes: &mut Changes,
+        round: bool,
+    ) -> Result<(), Fault> {
+        let Step { source, extent, vertex, parent, .. } = step;
+        let count = self.slots.count(parent);
+        let mut spokes = alloc::vec![Spoke::default(); count.max(MOST)];
+        self.spokes(parent, &mut spokes);
+        if let (true, Some(few)) = (count <= MOST, spokes.first_chunk_mut()) {
+            let again = order(few, count);
+            debug_assert!(again || !round, "the faces of {parent}");
+        }
+        let spokes = &spokes[..count];
+        let from = self.points[parent as usize];
+        let here = cell_of(from);
+        let edge = |vertex: u32| difference(cell_of(self.points[vertex as usize]), here);
+        let mut neighbours = Neighbours::<MOST_KNOWN>::new(from);
+        let mut chosen = alloc::vec![false; count];
+        let mut before = 0;
+        for spoke in spokes {
+            let given = source.switches(vertex, spoke.place, count as u32);
+            let switches = coder.bit(&mut self.models.switches[before], given);
+            before = 1 + usize::from(switches);
+            chosen[spoke.place as usize] = switches;
+            if switches {
+                neighbours.turn(edge(spoke.out), edge(spoke.back));
+                for neighbour in [spoke.out, spoke.back] {
+                    let point = self.points[neighbour as usize];
+                    if !neighbours.known().iter().any(|&known| cell_of(known) == cell_of(point)) {
+                        neighbours.add(point, squared(edge(neighbour)));
+                    }
+                }
+            }
+        }
+        let all = spokes.iter().take(MOST).map(|spoke| squared(edge(spoke.out))).sum();
+        let thirds = self.code_thirds(coder, step, spokes, &chosen)?;
+        let cell = self.code_cell(coder, step, changes, &neighbours, all, count as u32 + 1)?;
+        let mask = chosen.iter().rev().fold(0, |mask, &switches| mask << 1 | u32::from(switches));
+        let moved = if count <= MOST { Moved::Mask(mask) } else { Moved::Long(&chosen) };
+        self.take(step, count, moved, changes);
+        let [starts, stops] = &thirds;
+        for &third in starts {
+            self.introduce([parent, third, vertex], changes);
+        }
+        for &third in stops {
+            self.introduce([parent, vertex, third], changes);
+        }
+        debug_assert!(self.corners.len() <= extent.faces.end as usize, "faces of {vertex}");
+        self.arrive(cell);
+        Ok(())
+    }
+
+    /// The third vertices of new faces on either side.
+    fn code_thirds<C: Coder, S: Source>(
+        &mut self,
+        coder: &mut C,
+        step: Step<'_, S>,
+        spokes: &[Spoke],
+        chosen: &[bool],
+    ) -> Result<[Vec<u32>; 2], Fault> {
+        let Step { source, extent, vertex, parent, .. } = step;
+        let faces = source.faces(Some(vertex));
+        let count = spokes.len();
+        let mask = |k: usize| chosen[spokes[k].place as usize];
+        let expected = [
+            (1..count).find(|&k| mask(k) && !mask(k - 1)).map(|k| spokes[k].out),
+            (1..count).find(|&k| !mask(k) && mask(k - 1)).map(|k| spokes[k - 1].back),
+        ];
+        let fallback = [spokes.first().map_or(0, |s| s.out), spokes.last().map_or(0, |s| s.back)];
+        let mut thirds = [Vec::new(), Vec::new()];
+        for side in 0..2 {
+            let mut given = faces.iter().filter(|face| (face.1[2] == vertex) == (side == 0));
+            let mut left = given.clone().count();
+            let guess = expected[side].unwrap_or(fallback[side]);
+            loop {
+                let so_far = thirds[side].len().min(3);
+                let model = (side * 4 + so_far) * 2 + usize::from(expected[side].is_some());
+                if !coder.bit(&mut self.models.faces[model], left > 0) {
+                    break;
+                }
+                left = left.saturating_sub(1);
+                let third = given.next().map_or(0, |face| face.1[1 + side]);
+                let third = self.code_third(coder, spokes, guess, third, vertex, parent)?;
+                thirds[side].push(third);
+                let new = thirds.iter().map(Vec::len).sum::<usize>();
+                if coder.failed() {
+                    return Err(LENGTH);
+                }
+                if self.corners.len() + new > extent.faces.end as usize {
+                    return Err((codes::CODED_FACES, 0));
+                }
+            }
+        }
+        Ok(thirds)
+    }
+
+    /// Where the vertex is, and what its parent's shape becomes. `squares`: the sum of the squares of the edges that the parent
+    /// keeps; `edges`: how many it has in the end.
+    #[inline(always)]
+    fn code_cell<C: Coder, S: Source, const M: usize>(
+        &mut self,
+        coder: &mut C,
+        step: Step<'_, S>,
+        changes: &mut Changes,
+        neighbours: &Neighbours<M>,
+        squares: u64,
+        edges: u32,
+    ) -> Result<(Cell, Shape), Fault> {
+        let Step { source, bounds, vertex, parent, .. } = step;
+        let known = neighbours.known();
+        let here = cell_of(known[0]);
+        let place = Place::new(known, neighbours.sum, here, neighbours.normal);
+        let (cell, height) = place.code(coder, &mut self.models.residuals, source.cell(vertex));
+        if (0..3).any(|k| cell[k] < 0 || cell[k] as u32 > bounds.top[k]) {
+            return Err((codes::POSITION, 0));
+        }
+        if let Some(exact) = &bounds.exact {
+            let position = exact.code(coder, cell, source.position(vertex));
+            changes.positions.push(position.ok_or((codes::POSITION, 0))?);
+        }
+        // From here on nothing fails.
+        let count = known.len() as i64;
+        let edge = difference(cell, here);
+        let apart = squared(edge);
+        // Σ |n − v|² = Σ |n − p|² − 2 (v − p) · Σ (n − p) + k |v − p|².
+        let along: i64 =
+            (0..3).map(|k| edge[k] * (i64::from(neighbours.sum[k]) - count * i64::from(here[k]))).sum();
+        let around = (neighbours.squares as i64 - 2 * along + count * apart as i64) as u64;
+        let old = self.shape(parent);
+        changes.shapes.push((parent, old));
+        let parent_height = (u32::from(height) + u32::from(old.height)) / 2;
+        let history = 2 * self.packets;
+        let parent_scale = scale(divide(squares + apart, edges));
+        let new = Shape { scale: parent_scale, height: parent_height as u8, history: history | 1 };
+        self.set_shape(parent, new);
+        Ok((cell, Shape { scale: scale(divide(around, count as u32)), height, history }))
+    }
+
+    /// Lets slots of the parent switch.
+    #[inline(always)]
+    fn take<S: Source>(&mut self, step: Step<'_, S>, count: usize, moved: Moved<'_>, changes: &mut Changes) {
+        let Step { vertex, parent, .. } = step;
+        changes.counts.push(count as u32);
+        match moved {
+            Moved::Mask(moved) => {
+                changes.masks.push(moved);
+                if count <= Slots::SHORT {
+                    self.slots.split_short(parent, vertex, moved);
+                } else {
+                    self.slots.split(parent, vertex, |k| moved >> k & 1 == 1);
+                }
+            }
+            Moved::Long(chosen) => {
+                changes.long.extend_from_slice(chosen);
+                self.slots.split(parent, vertex, |k| chosen[k]);
+            }
+        }
+        let corners = self.corners.as_flattened_mut();
+        for &slot in self.slots.of(vertex) {
+            corners[slot as usize] = vertex;
+        }
+        self.parents.push(parent);
+    }
+
+    /// Adds the vertex itself, after its faces.
+    #[inline(always)]
+    fn arrive(&mut self, (cell, shape): (Cell, Shape)) {
+        self.face_ends.push(self.corners.len() as u32);
+        self.push_vertex(cell, shape);
+    }
+
+    /// The third vertex of a new face.
+    fn code_third<C: Coder>(
+        &mut self,
+        coder: &mut C,
+        spokes: &[Spoke],
+        guess: u32,
+        third: u32,
+        vertex: u32,
+        parent: u32,
+    ) -> Result<u32, Fault> {
+        let possible = |third: u32| third < vertex && third != parent;
+        if coder.bit(&mut self.models.thirds[0], third == guess) {
+            return if possible(guess) { Ok(guess) } else { Err((codes::FACE_VERTICES, 0)) };
+        }
+        let at = spokes.iter().position(|s| s.out == third || s.back == third);
+        let third = if coder.bit(&mut self.models.thirds[1], at.is_some()) {
+            let bits = usize::BITS - spokes.len().leading_zeros();
+            let place = raw(coder, bits, at.unwrap_or(0) as u32);
+            let Some(&spoke) = spokes.get(place as usize) else { return Err((codes::CORNER, 0)) };
+            if coder.raw(1, u32::from(spoke.out != third)) == 1 { spoke.back } else { spoke.out }
+        } else {
+            raw(coder, u32::BITS - vertex.leading_zeros(), third)
+        };
+        if third >= vertex {
+            return Err((codes::CORNER, 0));
+        }
+        if possible(third) { Ok(third) } else { Err((codes::FACE_VERTICES, 0)) }
+    }
+}
+
+/// The most neighbours that are looked at (PMESH-COD-10).
+const MOST_KNOWN: usize = MOST + 2;
+
+/// The octave of a distance from its square, 15 at most.
+#[inline(always)]
+fn scale(squared: u64) -> u8 {
+    ((u64::BITS - squared.leading_zeros()).div_ceil(2)).min(15) as u8
+}
+
+/// Whether a run of some but not all faces switches.
+fn is_regular(run: Run, count: usize, switch: impl Fn(usize) -> bool) -> bool {
+    run.count > 0 && run.count < count && (0..run.count).all(|k| switch((run.first + k) % count))
+}
