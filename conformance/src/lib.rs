@@ -5,7 +5,7 @@
 //!   languages, and the seeds of the fuzz targets to `fuzz/corpus/`.
 //! - [`oracles`] says what must hold for any bytes whatever: the bodies of the fuzz targets, which the tests here call with
 //!   all vectors and seeds.
-//! - [`reference`] is a second reader of `.pmesh` packets, written from the specification alone, with which the first is compared.
+//! - [`mod@reference`] is a second reader of `.pmesh` packets, written from the specification alone, with which the first is compared.
 //! - [`bounds`] asserts how much a reader may allocate; [`choices`] turns bytes into things to encode, and [`surfaces`] grows
 //!   meshes.
 //!
