@@ -8,12 +8,14 @@ use alloc::vec::Vec;
 
 use ivg_wire::Code;
 
+use crate::bits::Bits;
 use crate::code::codes;
 use crate::header::PacketEntry;
 
 mod cut;
 mod exact;
 mod geometry;
+mod live;
 mod load;
 mod models;
 mod order;
@@ -24,6 +26,7 @@ mod save;
 mod split;
 mod walk;
 
+pub(crate) use live::Live;
 pub(crate) use order::arranged;
 pub(crate) use save::{Known, Saver, cells};
 
@@ -129,10 +132,14 @@ pub(crate) struct State {
 struct Changes {
     /// Shapes that were there before, with their vertices.
     shapes: Vec<(u32, Shape)>,
-    /// Faces with their corners as introduced.
-    introduced: Vec<[u32; 3]>,
     /// Positions, where they are binary32 numbers.
     positions: Vec<[f32; 3]>,
+    /// Where the mesh is given its connectivity as it grows: the switch codes of all vertices. The next four are not kept then.
+    live: Option<Bits>,
+    /// Faces of the base.
+    base_faces: u32,
+    /// Faces with their corners as introduced.
+    introduced: Vec<[u32; 3]>,
     /// For each vertex from the base on, how many slots its parent had.
     counts: Vec<u32>,
     /// Which of these slots switch, the first of ascending order in bit 0; of parents with few of them.

@@ -32,7 +32,7 @@ impl State {
         read.map(|()| self.raw(entry, &changes))
     }
 
-    fn read_packet(
+    pub(super) fn read_packet(
         &mut self,
         header: &Header,
         extent: &PacketEntry,

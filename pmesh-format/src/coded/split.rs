@@ -376,20 +376,33 @@ impl State {
     #[inline(always)]
     fn take<S: Source>(&mut self, step: Step<'_, S>, count: usize, moved: Moved<'_>, changes: &mut Changes) {
         let Step { vertex, parent, .. } = step;
-        changes.counts.push(count as u32);
+        match (&mut changes.live, &moved) {
+            // Codes stand in descending order of slots (PMESH-SWI-01).
+            (Some(switches), &Moved::Mask(moved)) => {
+                let codes = moved.reverse_bits().unbounded_shr(u32::BITS - count as u32);
+                switches.push(codes.into(), count as u32);
+            }
+            (Some(switches), Moved::Long(chosen)) => {
+                chosen.iter().rev().for_each(|&switch| switches.push(switch.into(), 1));
+            }
+            (None, &Moved::Mask(moved)) => {
+                changes.counts.push(count as u32);
+                changes.masks.push(moved);
+            }
+            (None, Moved::Long(chosen)) => {
+                changes.counts.push(count as u32);
+                changes.long.extend_from_slice(chosen);
+            }
+        }
         match moved {
             Moved::Mask(moved) => {
-                changes.masks.push(moved);
                 if count <= Slots::SHORT {
                     self.slots.split_short(parent, vertex, moved);
                 } else {
                     self.slots.split(parent, vertex, |k| moved >> k & 1 == 1);
                 }
             }
-            Moved::Long(chosen) => {
-                changes.long.extend_from_slice(chosen);
-                self.slots.split(parent, vertex, |k| chosen[k]);
-            }
+            Moved::Long(chosen) => self.slots.split(parent, vertex, |k| chosen[k]),
         }
         let corners = self.corners.as_flattened_mut();
         for &slot in self.slots.of(vertex) {

@@ -94,10 +94,12 @@ impl State {
         self.points.reserve(extent.vertices.len());
         self.histories.reserve(extent.vertices.len());
         let splits = extent.vertices.len();
-        changes.counts.reserve(splits);
-        changes.masks.reserve(splits);
         changes.shapes.reserve(splits);
-        changes.introduced.reserve(extent.faces.len());
+        if changes.live.is_none() {
+            changes.counts.reserve(splits);
+            changes.masks.reserve(splits);
+            changes.introduced.reserve(extent.faces.len());
+        }
         self.slots.resize(end as usize, usize::MAX);
         if extent.vertices.start < self.base {
             self.code_base(coder, source, extent, bounds, changes)?;
@@ -174,6 +176,7 @@ impl State {
         if count > extent.faces.end {
             return Err((codes::CODED_FACES, 0));
         }
+        changes.base_faces = count;
         for k in 0..count as usize {
             let known = faces.get(k).map_or([0; 3], |&(_, corners, _)| corners);
             let corners = known.map(|corner| raw(coder, bits(self.base - 1), corner));
@@ -199,6 +202,8 @@ impl State {
             self.slots.push(corner, slot);
         }
         self.corners.push(corners);
-        changes.introduced.push(corners);
+        if changes.live.is_none() {
+            changes.introduced.push(corners);
+        }
     }
 }

@@ -9,8 +9,9 @@ use zerocopy::FromBytes;
 use zerocopy::little_endian::{U16, U32};
 
 use super::Replay;
+use crate::attributes::Attributes;
 use crate::code::codes;
-use crate::coded::State;
+use crate::coded::{Live, State};
 use crate::lattice::Lattice;
 use crate::packet::{Packet, Varints};
 use crate::room::reserve;
@@ -36,11 +37,46 @@ impl Replay {
         if self.header.mode == Mode::Raw {
             return self.load_payload(packet, packet.payload());
         }
+        if self.attributes() == Attributes::default() {
+            return self.load_live(packet);
+        }
         let base = self.base();
         let mut coded = self.coded.take().unwrap_or_else(|| Box::new(State::new(base)));
         let read = coded.read(&self.header, packet.entry(), packet.payload());
         self.coded = Some(coded);
         self.load_payload(packet, &read?)
+    }
+
+    /// Takes in a coded packet of a mesh without attributes.
+    fn load_live(&mut self, packet: &Packet<'_>) -> Result<(), Fault> {
+        let entry = packet.entry();
+        let base = self.base();
+        let mut coded = self.coded.take().unwrap_or_else(|| Box::new(State::new(base)));
+        let live = Live {
+            positions: &mut self.positions,
+            corners: &mut self.corners,
+            slots: &mut self.slots,
+            parents: &mut self.parents,
+            face_ends: &mut self.face_ends,
+            base_faces: &mut self.base_faces,
+            switches: &mut self.switches,
+        };
+        let read = coded.read_live(&self.header, entry, packet.payload(), live);
+        // Nobody asks for what has been learnt when all has arrived.
+        if read.is_err() || entry.vertices.end < self.header.vertex_count {
+            self.coded = Some(coded);
+        }
+        read?;
+        self.level = entry.vertices.end;
+        self.switch_at = self.switches.len();
+        self.touched.resize(self.corners.len(), self.header.face_count as usize);
+        // Corners only ever switch to later vertices: those that have switched are now at vertices of this packet.
+        for vertex in entry.vertices.clone() {
+            for face in self.slots.of(vertex).iter().map(|slot| slot / 3).filter(|&f| f < entry.faces.start) {
+                self.touched.mark(face);
+            }
+        }
+        Ok(())
     }
 
     /// Takes in what a packet says, in the form of a raw one.
