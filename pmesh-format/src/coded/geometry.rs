@@ -173,9 +173,11 @@ impl Place {
         });
         let mut apart = [0u32; 3];
         for neighbour in neighbours {
-            apart.iter_mut().zip(neighbour).zip(mean).for_each(|((sum, x), mean)| *sum += x.abs_diff(mean));
+            for k in 0..3 {
+                apart[k] += neighbour[k].abs_diff(mean[k]);
+            }
         }
-        let spreads = apart.map(|sum| class(divide(8 * u64::from(sum), count) + 1));
+        let spreads = core::array::from_fn(|k| class(divide(8 * u64::from(apart[k]), count) + 1));
         let height = divide((sum[3] >> 16) as u64, count) as u32;
         // At most 24 bits are left of each component, so that every product below fits in 53.
         let bits = normal.iter().fold(0, |all, n| all | n.unsigned_abs()).max(1).ilog2() + 1;

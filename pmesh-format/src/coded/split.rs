@@ -359,8 +359,10 @@ impl State {
         let edge = difference(cell, here);
         let apart = squared(edge);
         // Σ |n − v|² = Σ |n − p|² − 2 (v − p) · Σ (n − p) + k |v − p|².
-        let along: i64 =
-            (0..3).map(|k| edge[k] * (i64::from(neighbours.sum[k]) - count * i64::from(here[k]))).sum();
+        let mut along = 0;
+        for k in 0..3 {
+            along += edge[k] * (i64::from(neighbours.sum[k]) - count * i64::from(here[k]));
+        }
         let around = (neighbours.squares as i64 - 2 * along + count * apart as i64) as u64;
         let old = self.shape(parent);
         changes.shapes.push((parent, old));
