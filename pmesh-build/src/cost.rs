@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::attributes::Deviations;
+use crate::distance::squared_distance;
 use crate::options::Cost;
 use crate::quadric::Quadric;
 use crate::rules::twice_area;
@@ -16,6 +17,8 @@ const SEAM_WEIGHT: f64 = 1.0;
 /// cost. It decides where quadrics cannot: in flat regions short edges go first, so that triangles stay well shaped. An
 /// edge pays as much as for a distance of 1/3000 of its length.
 const LENGTH_WEIGHT: f64 = 1e-7;
+/// Mean of the squared heights of a cone over its area, per squared height of its tip.
+const CONE: f64 = 1.0 / 6.0;
 
 /// The costs of all collapses, kept up to date while vertices go.
 #[derive(Debug)]
@@ -90,11 +93,38 @@ impl<'a> Costs<'a> {
                 let area = moving.area();
                 let length = LENGTH_WEIGHT * area * from.distance_squared(to);
                 let growth = (self.sum(surface, u, v) - self.own[u as usize]).max(0.0) + length;
-                // A share of the whole, so that the cost orders the same way at any scale.
-                if area > 0.0 { growth / (area / self.total_area).sqrt().sqrt() } else { growth }
+                if area > 0.0 { self.by_area(growth, area) } else { growth }
             }
             Cost::Melax => from.distance(to) * curvature(surface, u, v),
         }
+    }
+
+    /// What moving `u` onto its neighbour `v` costs at least when `left` vertices are left.
+    ///
+    /// Quadrics do not see a thin spike go: its sides keep their planes, and its tip has hardly any area. So, where `u`
+    /// stands for less area than vertices do on average, its height above the faces that take its place counts as if
+    /// those were of average area: as a cone of that height, the mean of whose squared heights is a sixth of its own.
+    pub(crate) fn at_least(&self, surface: &Surface, u: u32, v: u32, left: usize) -> f64 {
+        // Every face counts at each of its three vertices.
+        let average = 3.0 * self.total_area / left as f64;
+        if self.kind != Cost::Quadric || self.quadrics[u as usize].area() >= average {
+            return 0.0;
+        }
+        let (from, to) = (surface.positions[u as usize], surface.positions[v as usize]);
+        let moved =
+            surface.around(u).iter().map(|&f| surface.faces[f as usize]).filter(|face| !face.contains(&v));
+        let height = moved.fold(from.distance_squared(to), |least, face| {
+            // Its minimum with NaN, for a face without an area, is the other one.
+            let corner = |x: u32| if x == u { to } else { surface.positions[x as usize] };
+            least.min(squared_distance(from, face.map(corner)))
+        });
+        self.by_area(CONE * height * average, average)
+    }
+
+    /// A sum over an area \[m²\], as costs weigh it: divided by the fourth root of the area's share of the whole, so that
+    /// costs order the same way at any scale.
+    fn by_area(&self, sum: f64, area: f64) -> f64 {
+        sum / (area / self.total_area).sqrt().sqrt()
     }
 
     /// How far the surface moves, estimated \[m\]: for quadrics the root of the mean over the area of

@@ -30,6 +30,7 @@
 
 mod attributes;
 mod cost;
+mod distance;
 mod error;
 #[cfg(feature = "fuzz")]
 mod fuzz;

@@ -22,6 +22,9 @@ const TOPOLOGY_SHARE: usize = 300;
 /// When nothing is allowed any more the rules are relaxed, unless going over all vertices once more (what is around them
 /// has changed) had freed at least one collapse for this many vertices.
 const RETRY_SHARE: usize = 16;
+/// What a collapse costs at least rises with the average area of vertices. A candidate waits once more only if that is
+/// more than this times what it was queued with.
+const RISE: f64 = 1.1;
 
 /// One vertex that is gone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,7 +131,7 @@ impl Run<'_> {
                 self.rules = Rules::Topology;
                 self.refill();
             }
-            let Some(Candidate { u, v, .. }) = self.queue.pop() else {
+            let Some(Candidate { u, v, cost }) = self.queue.pop() else {
                 if made * RETRY_SHARE <= self.left {
                     self.rules = match self.rules {
                         Rules::Strict => Rules::Topology,
@@ -146,7 +149,7 @@ impl Run<'_> {
                 continue;
             }
             self.ring.collect(&self.surface, u);
-            if !self.allowed(u, v) {
+            if !self.allowed(u, v) || self.at_least(u, v) > RISE * cost {
                 self.look_closely(u);
                 continue;
             }
@@ -210,10 +213,27 @@ impl Run<'_> {
         options.clear();
         options.extend(self.ring.edges.iter().map(|e| (self.costs.of(&self.surface, u, e.to), e.to)));
         options.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        if let Some(&(cost, v)) = options.iter().find(|&&(_, v)| self.allowed(u, v)) {
-            self.queue.set(Candidate { cost, u, v });
+        let mut best: Option<Candidate> = None;
+        for &(cost, v) in &options {
+            if best.is_some_and(|b| b.cost <= cost) {
+                break;
+            }
+            if self.allowed(u, v) {
+                let cost = cost.max(self.at_least(u, v));
+                if best.is_none_or(|b| cost < b.cost) {
+                    best = Some(Candidate { cost, u, v });
+                }
+            }
+        }
+        if let Some(candidate) = best {
+            self.queue.set(candidate);
         }
         self.options = options;
+    }
+
+    /// What moving `u` onto `v` costs at least; where topology gives way, thin features may too.
+    fn at_least(&self, u: u32, v: u32) -> f64 {
+        if self.rules > Rules::Strict { 0.0 } else { self.costs.at_least(&self.surface, u, v, self.left) }
     }
 
     /// Moves `u` onto `v`, removes vertices that lose their last face, and looks at what is around again.

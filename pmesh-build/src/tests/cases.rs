@@ -486,3 +486,46 @@ fn pinholes_do_not_hold_the_coarsest_levels() {
     // Rims stay rims down to 7200 / 300 = 24 vertices; kept any longer they would go on to 10.
     assert!(report.relaxed_from >= 24, "{report:?}");
 }
+
+/// Thin spikes have hardly any area and sides that keep their planes when they get shorter, so quadrics do not miss
+/// them. Their height counts all the same.
+#[test]
+fn thin_spikes_stay_while_lower_bumps_go() {
+    let mut mesh = grid(40, bumps);
+    let mut tips = Vec::new();
+    for face in (0..3042).step_by(500) {
+        let corners = mesh.triangles.swap_remove(face);
+        let place = corners.map(|v| mesh.positions[v as usize]);
+        let centre = [0, 1, 2].map(|k| (place[0][k] + place[1][k] + place[2][k]) / 3.0);
+        let mut below = corners;
+        for ring in 0..8u8 {
+            let (share, height) = (0.08 - 0.01 * f32::from(ring), 0.005 * f32::from(ring));
+            let above = place.map(|p| {
+                let [x, y, z] = [0, 1, 2].map(|k| centre[k] + share * (p[k] - centre[k]));
+                mesh.positions.push([x, y, z + height]);
+                mesh.positions.len() as u32 - 1
+            });
+            for k in 0..3 {
+                let next = (k + 1) % 3;
+                mesh.triangles.push([below[k], below[next], above[k]]);
+                mesh.triangles.push([below[next], above[next], above[k]]);
+            }
+            below = above;
+        }
+        tips.push([centre[0], centre[1], centre[2] + 0.04]);
+        mesh.positions.push([centre[0], centre[1], centre[2] + 0.04]);
+        let tip = mesh.positions.len() as u32 - 1;
+        mesh.triangles.extend([0, 1, 2].map(|k| [below[k], below[(k + 1) % 3], tip]));
+    }
+    mesh.wedges.vertices = (0..mesh.positions.len() as u32).collect();
+    let (progressive, report) = built(&mesh, &default());
+    assert_eq!((report.vertices, report.boundary_edges, report.nonmanifold_edges), (1600 + 7 * 25, 156, 0));
+    check_levels(&progressive, 50);
+    let coarse = progressive.level(150);
+    let near = |tip: &[f32; 3]| {
+        let distance = |p: &[f32; 3]| (0..3).map(|k| (p[k] - tip[k]).powi(2)).sum::<f32>().sqrt();
+        coarse.positions.iter().map(distance).fold(f32::INFINITY, f32::min)
+    };
+    let missing: Vec<f32> = tips.iter().map(near).collect();
+    assert!(missing.iter().all(|&d| d < 0.005), "{missing:?}");
+}
