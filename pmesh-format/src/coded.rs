@@ -19,6 +19,7 @@ mod live;
 mod load;
 mod models;
 mod order;
+mod points;
 mod priors;
 mod rans;
 mod ring;
@@ -34,6 +35,7 @@ use crate::slots::Slots;
 use cut::Cuts;
 use geometry::{Cell, Residuals};
 use models::Binary;
+use points::{Point, Points};
 
 /// What is wrong with a payload, and at which byte of it.
 pub(crate) type Fault = (Code, usize);
@@ -46,11 +48,7 @@ pub(crate) fn least_bytes(start: u32, vertices: u32, faces: u32) -> u64 {
     4 + (u64::from(vertices) + u64::from(faces)) / 4 + u64::from(start) / 64
 }
 
-/// A vertex as its neighbours see it (PMESH-COD-05): the cell, then its class of height × 2¹⁶ + its scale. Together, since
-/// both are looked at wherever a neighbour is, and so that sums of all four are sums of each.
-type Point = [i32; 4];
-
-/// The cell of a vertex.
+/// The cell of a point.
 #[inline(always)]
 fn cell_of([x, y, z, _]: Point) -> Cell {
     [x, y, z]
@@ -65,14 +63,6 @@ struct Shape {
     height: u8,
     /// 2 × the packet that brought it, or the last one that split it, + 1 if it has been split.
     history: u32,
-}
-
-impl Shape {
-    /// As it stands in a [`Point`].
-    #[inline(always)]
-    fn packed(self) -> i32 {
-        i32::from(self.height) << 16 | i32::from(self.scale)
-    }
 }
 
 /// Everything that is learnt.
@@ -118,7 +108,7 @@ pub(crate) struct State {
     packets: u32,
     corners: Vec<[u32; 3]>,
     slots: Slots,
-    points: Vec<Point>,
+    points: Points,
     /// [`Shape::history`] of each vertex.
     histories: Vec<u32>,
     parents: Vec<u32>,
@@ -158,7 +148,7 @@ impl State {
             packets: 0,
             corners: Vec::new(),
             slots: Slots::default(),
-            points: Vec::new(),
+            points: Points::default(),
             histories: Vec::new(),
             parents: Vec::new(),
             face_ends: Vec::new(),
@@ -192,23 +182,29 @@ impl State {
         self.slots.resize(start, usize::MAX);
     }
 
+    /// The cell of a vertex.
+    #[inline(always)]
+    fn cell(&self, vertex: u32) -> Cell {
+        cell_of(self.points.get(vertex))
+    }
+
     /// What is remembered of a vertex.
     #[inline(always)]
     fn shape(&self, vertex: u32) -> Shape {
-        let [.., packed] = self.points[vertex as usize];
+        let [.., packed] = self.points.get(vertex);
         Shape { scale: packed as u8, height: (packed >> 16) as u8, history: self.histories[vertex as usize] }
     }
 
     #[inline(always)]
     fn set_shape(&mut self, vertex: u32, shape: Shape) {
-        self.points[vertex as usize][3] = shape.packed();
+        self.points.set_shape(vertex, shape);
         self.histories[vertex as usize] = shape.history;
     }
 
     /// A new vertex.
     #[inline(always)]
-    fn push_vertex(&mut self, [x, y, z]: Cell, shape: Shape) {
-        self.points.push([x, y, z, shape.packed()]);
+    fn push_vertex(&mut self, cell: Cell, shape: Shape) {
+        self.points.push(cell, shape);
         self.histories.push(shape.history);
     }
 

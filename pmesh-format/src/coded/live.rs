@@ -4,7 +4,8 @@
 use alloc::vec::Vec;
 use core::mem::swap;
 
-use super::{Changes, Fault, State, cell_of};
+use super::walk::Bounds;
+use super::{Changes, Fault, State};
 use crate::bits::Bits;
 use crate::code::codes;
 use crate::header::{Header, PacketEntry};
@@ -40,7 +41,7 @@ impl State {
         let total = header.vertex_count as usize;
         let (vertices, faces) = (entry.vertices.len(), entry.faces.len());
         let splits = vertices.saturating_sub(self.base.saturating_sub(entry.vertices.start) as usize);
-        reserve(&mut self.points, vertices, total);
+        self.points.reserve(vertices, total, Bounds::new(header.bounds, header.positions, 0).top);
         reserve(&mut self.histories, vertices, total);
         reserve(mesh.corners, faces, header.face_count as usize);
         reserve(mesh.parents, splits, total - self.base as usize);
@@ -89,8 +90,9 @@ impl State {
         };
         let lattice = Lattice::new(header.bounds, bits);
         let start = positions.len();
-        let brought = &self.points[entry.vertices.start as usize..];
-        positions.extend(brought.iter().map(|&point| lattice.position(cell_of(point).map(|x| x as u32))));
+        positions.extend(
+            entry.vertices.clone().map(|vertex| lattice.position(self.cell(vertex).map(|x| x as u32))),
+        );
         let finite = positions[start..].iter().fold(true, |all, p| all & p.iter().all(|x| x.is_finite()));
         if finite { Ok(()) } else { Err((codes::POSITION, 0)) }
     }

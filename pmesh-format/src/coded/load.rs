@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::rans::Reader;
 use super::ring::MOST;
 use super::walk::{Bounds, Nothing};
-use super::{Changes, Fault, LENGTH, SLOTS_A_BYTE, State, cell_of, least_bytes};
+use super::{Changes, Fault, LENGTH, SLOTS_A_BYTE, State, least_bytes};
 use crate::bits::Bits;
 use crate::code::codes;
 use crate::header::{Header, PacketEntry};
@@ -69,9 +69,9 @@ impl State {
         for x in changes.positions.as_flattened() {
             out.extend_from_slice(&x.to_le_bytes());
         }
-        let quantised = if changes.positions.is_empty() { vertices } else { 0..0 };
-        for &point in &self.points[quantised] {
-            let [x, y, z] = cell_of(point).map(|x| (x as u16).to_le_bytes());
+        let quantised = if changes.positions.is_empty() { extent.vertices.clone() } else { 0..0 };
+        for vertex in quantised {
+            let [x, y, z] = self.cell(vertex).map(|x| (x as u16).to_le_bytes());
             out.extend_from_slice([x, y, z, [0, 0]].as_flattened());
         }
         for corner in changes.introduced.as_flattened() {

@@ -144,13 +144,13 @@ impl State {
         place: impl Fn(usize) -> u32,
     ) -> Result<(), Fault> {
         let Step { source, extent, vertex, parent, .. } = step;
-        let from = self.points[parent as usize];
+        let from = self.points.get(parent);
         let here = cell_of(from);
         let mut points = [from; N];
         let mut edges = [[0i64; 3]; N];
         let mut lengths = [0u64; N];
         for k in 0..if N == FEW { N } else { count } {
-            points[k] = self.points[ring[k] as usize];
+            points[k] = self.points.get(ring[k]);
             edges[k] = difference(cell_of(points[k]), here);
             lengths[k] = if k < count { squared(edges[k]) } else { 0 };
         }
@@ -247,9 +247,10 @@ impl State {
             debug_assert!(again || !round, "the faces of {parent}");
         }
         let spokes = &spokes[..count];
-        let from = self.points[parent as usize];
+        let from = self.points.get(parent);
         let here = cell_of(from);
-        let edge = |vertex: u32| difference(cell_of(self.points[vertex as usize]), here);
+        let points = &self.points;
+        let edge = |vertex: u32| difference(cell_of(points.get(vertex)), here);
         let mut neighbours = Neighbours::<MOST_KNOWN>::new(from);
         let mut chosen = alloc::vec![false; count];
         let mut before = 0;
@@ -261,7 +262,7 @@ impl State {
             if switches {
                 neighbours.turn(edge(spoke.out), edge(spoke.back));
                 for neighbour in [spoke.out, spoke.back] {
-                    let point = self.points[neighbour as usize];
+                    let point = points.get(neighbour);
                     if !neighbours.known().iter().any(|&known| cell_of(known) == cell_of(point)) {
                         neighbours.add(point, squared(edge(neighbour)));
                     }

@@ -91,7 +91,7 @@ impl State {
         changes: &mut Changes,
     ) -> Result<(), Fault> {
         let end = extent.vertices.end;
-        self.points.reserve(extent.vertices.len());
+        self.points.reserve(extent.vertices.len(), usize::MAX, bounds.top);
         self.histories.reserve(extent.vertices.len());
         let splits = extent.vertices.len();
         changes.shapes.reserve(splits);
