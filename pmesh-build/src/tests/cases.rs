@@ -310,6 +310,19 @@ fn two_runs_give_the_same_order() {
     }
 }
 
+/// Nothing that threads do at the same time gets into the order, nor does the address of anything.
+#[test]
+fn threads_give_the_same_order() {
+    let mesh = beside(&torus(40, 20), &mapped(&grid(20, bumps), |[x, y, z]| [x, y, z + 3.0]));
+    let alone = built(&mesh, &default());
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..4).map(|_| scope.spawn(|| built(&mesh.clone(), &default()))).collect();
+        for thread in threads {
+            assert_eq!(thread.join().unwrap(), alone);
+        }
+    });
+}
+
 #[test]
 fn costs_have_names() {
     for cost in Cost::ALL {
