@@ -74,7 +74,8 @@ impl<'a> Reference<'a> {
             Mode::Raw => raw::take(&mut tables, self.header, entry, payload)?,
             Mode::Coded => {
                 let raw = coded.read(self.header, entry, payload)?;
-                raw::take(&mut tables, self.header, entry, &raw)?;
+                // Of coded packets everything is reported at their beginning (PMESH-COD-06).
+                raw::take(&mut tables, self.header, entry, &raw).map_err(|fault| Fault { at: 0, ..fault })?;
             }
         }
         tables.packets += 1;

@@ -5,6 +5,7 @@
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use ivg_wire::Code;
 
@@ -12,12 +13,14 @@ use crate::bits::Bits;
 use crate::code::codes;
 use crate::header::PacketEntry;
 
+mod attributes;
 mod cut;
 mod exact;
 mod geometry;
 mod live;
 mod load;
 mod models;
+mod octahedral;
 mod order;
 mod points;
 mod priors;
@@ -26,16 +29,20 @@ mod ring;
 mod save;
 mod split;
 mod walk;
+mod wedges;
 
+pub(crate) use attributes::{Given, Plan};
 pub(crate) use live::Live;
 pub(crate) use order::arranged;
 pub(crate) use save::{Known, Saver, cells};
 
 use crate::slots::Slots;
+use attributes::{Brought, Wedged};
 use cut::Cuts;
 use geometry::{Cell, Residuals};
 use models::Binary;
 use points::{Point, Points};
+use rans::Coder;
 
 /// What is wrong with a payload, and at which byte of it.
 pub(crate) type Fault = (Code, usize);
@@ -43,9 +50,10 @@ pub(crate) type Fault = (Code, usize);
 /// Slots that are looked at for each byte of a payload, at most (PMESH-COD-12).
 const SLOTS_A_BYTE: u64 = 64;
 
-/// The least payload of a coded packet that brings so many vertices and faces after so many vertices (PMESH-COD-12).
-pub(crate) fn least_bytes(start: u32, vertices: u32, faces: u32) -> u64 {
-    4 + (u64::from(vertices) + u64::from(faces)) / 4 + u64::from(start) / 64
+/// The least payload of a coded packet that follows so many vertices (PMESH-COD-12).
+pub(crate) fn least_bytes(entry: &PacketEntry) -> u64 {
+    let count = |range: &Range<u32>| u64::from(range.end.saturating_sub(range.start));
+    4 + (count(&entry.wedges) + count(&entry.faces)) / 4 + u64::from(entry.vertices.start) / 64
 }
 
 /// The cell of a point.
@@ -115,6 +123,8 @@ pub(crate) struct State {
     /// Faces with each vertex from the base on.
     face_ends: Vec<u32>,
     base: u32,
+    /// Where the file has attributes: what is known of wedges.
+    wedged: Option<Box<Wedged>>,
 }
 
 /// What a packet has changed and brought, for the raw form and for taking it back.
@@ -138,11 +148,13 @@ struct Changes {
     long: Vec<bool>,
     /// Slots that were looked at.
     looked_at: u64,
+    /// What there is of wedges.
+    wedges: Brought,
 }
 
 impl State {
     /// Before the first packet.
-    pub(crate) fn new(base: u32) -> Self {
+    pub(crate) fn new(base: u32, plan: Option<Plan>) -> Self {
         Self {
             models: Box::new(Models::new()),
             packets: 0,
@@ -153,11 +165,32 @@ impl State {
             parents: Vec::new(),
             face_ends: Vec::new(),
             base,
+            wedged: plan.map(|plan| Box::new(Wedged::new(plan))),
         }
+    }
+
+    /// Codes the attributes of a packet whose splits are done.
+    fn attributes<C: Coder>(
+        &mut self,
+        coder: &mut C,
+        given: Option<&Given<'_>>,
+        extent: &PacketEntry,
+        changes: &mut Changes,
+    ) -> Result<(), Fault> {
+        let Some(mut wedged) = self.wedged.take() else { return Ok(()) };
+        let mut brought = core::mem::take(&mut changes.wedges);
+        let coded = wedged.packet(coder, given, extent, self, changes, &mut brought);
+        changes.wedges = brought;
+        self.wedged = Some(wedged);
+        coded
     }
 
     /// Takes back what a packet that begins so has changed, the models excepted.
     fn take_back(&mut self, extent: &PacketEntry, changes: &Changes) {
+        if let Some(mut wedged) = self.wedged.take() {
+            wedged.take_back(extent, self, &changes.wedges);
+            self.wedged = Some(wedged);
+        }
         let first = extent.vertices.start.max(self.base);
         for vertex in (first..self.base + self.parents.len() as u32).rev() {
             let split = (vertex - self.base) as usize;

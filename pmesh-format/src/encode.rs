@@ -8,10 +8,11 @@ use ivg_wire::{
 
 use crate::attributes::Attributes;
 use crate::bits::Bits;
-use crate::coded::{Known, Saver, arranged, cells};
+use crate::coded::{Given, Known, Plan, Saver, arranged, cells};
 use crate::header::{Header, PARAMETER_BITS, PacketEntry};
 use crate::lattice::{Lattice, bounds};
 use crate::material::write_names;
+use crate::mesh::Wedges;
 use crate::packet::{code_bits, write_varint};
 use crate::progressive::ProgressiveMesh;
 use crate::slots::Slots;
@@ -100,6 +101,27 @@ impl EncodeOptions {
         arranged(mesh, &ends)
     }
 
+    /// The wedges as a reader will have them: as given in mode [`Mode::Raw`]; otherwise with the nearest of the normals that
+    /// can be coded (that of +z where one has no direction) and the nearest texture coordinates of the lattice in their box
+    /// (PMESH-COD-16, -17). Doing it twice changes nothing more.
+    #[must_use]
+    pub fn quantised_wedges(&self, wedges: &Wedges) -> Wedges {
+        let mut wedges = wedges.clone();
+        let header = Header {
+            attributes: Attributes { normals: true, uvs: true, ..Attributes::default() },
+            normal_bits: self.normal_bits,
+            uv_bits: self.uv_bits,
+            uv_bounds: uv_bounds(&wedges.uvs),
+            ..Header::default()
+        };
+        if let (Mode::Coded, Some(plan)) = (self.mode, Plan::new(&header)) {
+            wedges.normals =
+                plan.normals(&wedges.normals).into_iter().map(|code| plan.normal(code)).collect();
+            wedges.uvs = plan.uvs(&wedges.uvs).into_iter().map(|point| plan.uv(point)).collect();
+        }
+        wedges
+    }
+
     /// Packets of that many vertices each.
     #[must_use]
     pub const fn fixed(vertices: u32) -> Self {
@@ -139,14 +161,8 @@ pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>
     let arranged = (options.mode == Mode::Coded).then(|| options.arranged(mesh));
     let mesh = arranged.as_ref().unwrap_or(mesh);
     let writer = Writer::new(mesh, options);
-    if options.mode == Mode::Coded && writer.attributes != Attributes::default() {
-        return Err(EncodeError::Option { option: "mode" });
-    }
-    let cells = match options.mode {
-        Mode::Raw => Vec::new(),
-        Mode::Coded => cells(writer.bounds, options.positions, &mesh.positions),
-    };
-    let mut saver = (options.mode == Mode::Coded).then(|| writer.saver(&cells));
+    let known = (options.mode == Mode::Coded).then(|| Quantised::new(&writer));
+    let mut saver = known.as_ref().map(|known| writer.saver(known));
     let names = write_names(&mesh.material_names).ok_or(EncodeError::MaterialName)?;
 
     let mut packets: Vec<PacketEntry> = Vec::new();
@@ -196,12 +212,41 @@ pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>
     Ok(out)
 }
 
+/// What coded packets hold, in whole numbers.
+struct Quantised {
+    cells: Vec<[i32; 3]>,
+    /// How attributes are stored, if there are any.
+    plan: Option<Plan>,
+    normals: Vec<[i32; 2]>,
+    uvs: Vec<[i32; 2]>,
+    /// With seams, the faces with vertices instead of wedges.
+    faces: Option<Vec<(u32, [u32; 3], usize)>>,
+}
+
+impl Quantised {
+    fn new(writer: &Writer<'_>) -> Self {
+        let mesh = writer.mesh;
+        let plan = Plan::new(&writer.header(Vec::new()));
+        let vertex = |wedge: u32| mesh.wedges.vertices[wedge as usize];
+        let faces = || writer.faces.iter().map(|&(level, face, k)| (level, face.map(vertex), k)).collect();
+        Self {
+            cells: cells(writer.bounds, writer.positions, &mesh.positions),
+            normals: plan.map_or_else(Vec::new, |plan| plan.normals(&mesh.wedges.normals)),
+            uvs: plan.map_or_else(Vec::new, |plan| plan.uvs(&mesh.wedges.uvs)),
+            plan,
+            faces: writer.attributes.seams.then(faces),
+        }
+    }
+}
+
 /// A mesh, its faces in stored order, and the switch codes of its vertices.
 struct Writer<'a> {
     mesh: &'a ProgressiveMesh,
     attributes: Attributes,
     mode: Mode,
     positions: Positions,
+    /// Bits of coded normals and texture coordinates.
+    bits: [u8; 2],
     /// The bounding box.
     bounds: [[f32; 3]; 2],
     /// First wedge of each vertex, and the end.
@@ -231,17 +276,33 @@ impl<'a> Writer<'a> {
         };
         let switches = Switches::find(mesh, &faces, &wedge_starts);
         let bounds = bounds(&mesh.positions);
-        let EncodeOptions { mode, positions, .. } = *options;
-        Self { mesh, attributes, mode, positions, bounds, wedge_starts, faces, switches }
+        let EncodeOptions { mode, positions, normal_bits, uv_bits, .. } = *options;
+        let bits = [normal_bits, uv_bits];
+        Self { mesh, attributes, mode, positions, bits, bounds, wedge_starts, faces, switches }
     }
 
     /// The writer of coded packets.
-    fn saver<'b>(&'b self, cells: &'b [[i32; 3]]) -> Saver<'b> {
+    fn saver<'b>(&'b self, quantised: &'b Quantised) -> Saver<'b> {
+        let switches = (&self.switches.codes[..], &self.switches.ranges[..]);
+        let given = |plan| {
+            let given = Given {
+                wedge_starts: &self.wedge_starts,
+                targets: &self.mesh.wedge_collapse,
+                switches,
+                faces: &self.faces,
+                materials: &self.mesh.materials,
+                normals: &quantised.normals,
+                uvs: &quantised.uvs,
+                colours: &self.mesh.wedges.colours,
+            };
+            (plan, given)
+        };
         let known = Known {
             mesh: self.mesh,
-            faces: &self.faces,
-            switches: (&self.switches.codes, &self.switches.ranges),
-            cells,
+            faces: quantised.faces.as_deref().unwrap_or(&self.faces),
+            switches,
+            cells: &quantised.cells,
+            wedges: quantised.plan.map(given),
         };
         Saver::new(known, self.bounds, self.positions)
     }
@@ -320,6 +381,7 @@ impl<'a> Writer<'a> {
     /// The header, as far as it is known before the file is laid out.
     fn header(&self, packets: Vec<PacketEntry>) -> Header {
         let mesh = self.mesh;
+        let coded = self.mode == Mode::Coded;
         Header {
             minor: FORMAT.minor,
             optional_features: 0,
@@ -336,9 +398,9 @@ impl<'a> Writer<'a> {
             attributes: self.attributes,
             origin: mesh.origin,
             bounds: self.bounds,
-            normal_bits: 0,
-            uv_bits: 0,
-            uv_bounds: [[0.0; 2]; 2],
+            normal_bits: if coded && self.attributes.normals { self.bits[0] } else { 0 },
+            uv_bits: if coded && self.attributes.uvs { self.bits[1] } else { 0 },
+            uv_bounds: if coded { uv_bounds(&mesh.wedges.uvs) } else { [[0.0; 2]; 2] },
             packets,
         }
     }
@@ -398,6 +460,14 @@ impl Switches {
         let (start, end) = self.ranges[split];
         &self.codes[start..end]
     }
+}
+
+/// The least and the greatest texture coordinates; 0 without any.
+fn uv_bounds(uvs: &[[f32; 2]]) -> [[f32; 2]; 2] {
+    let first = uvs.first().map_or([[0.0; 2]; 2], |&uv| [uv, uv]);
+    uvs.iter().fold(first, |[low, high], uv| {
+        [core::array::from_fn(|k| low[k].min(uv[k])), core::array::from_fn(|k| high[k].max(uv[k]))]
+    })
 }
 
 fn floats<const N: usize>(out: &mut Vec<u8>, array: &[[f32; N]]) {

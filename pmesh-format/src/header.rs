@@ -152,10 +152,9 @@ impl Header {
         let packets = wire.packet_count.get();
         header.check_counts(packets)?;
         match Mode::from_id(wire.mode) {
-            Some(Mode::Raw) => {}
-            Some(Mode::Coded) if header.attributes == Attributes::default() => {}
-            _ if wire.mode == 0 => return Err(fail(codes::MODE_FORBIDDEN, at::MODE)),
-            _ => return Err(fail(codes::MODE_UNKNOWN, at::MODE)),
+            Some(_) => {}
+            None if wire.mode == 0 => return Err(fail(codes::MODE_FORBIDDEN, at::MODE)),
+            None => return Err(fail(codes::MODE_UNKNOWN, at::MODE)),
         }
         match Positions::from_id(wire.positions) {
             Some(_) => {}
@@ -302,10 +301,7 @@ impl Header {
         }
         let arrays = match self.mode {
             Mode::Raw => self.layout(&entry).map_or(u64::MAX, |layout| layout.rest as u64),
-            Mode::Coded => {
-                let counts = self.counts(&entry);
-                least_bytes(start.0, counts.vertices, counts.faces)
-            }
+            Mode::Coded => least_bytes(&entry),
         };
         let record = record_len(u64::from(entry.payload_bytes)).unwrap_or(u64::MAX);
         if arrays > u64::from(entry.payload_bytes) || record > u64::from(Maximum::RECORD_BYTES) {

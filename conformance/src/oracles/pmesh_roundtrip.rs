@@ -21,17 +21,16 @@ const MOST_WEDGES: usize = 5;
 pub fn pmesh_roundtrip(data: &[u8]) {
     let mut choices = Choices::new(data);
     let options = choose_options(&mut choices);
-    let mut mesh = choose_mesh(&mut choices);
-    if options.mode == Mode::Coded {
-        strip_attributes(&mut mesh);
-    }
+    let mesh = choose_mesh(&mut choices);
     let file = encode(&mesh, &options).unwrap_or_else(|error| panic!("a sound mesh is refused: {error}"));
     assert_eq!(encode(&mesh, &options).as_ref(), Ok(&file), "encoded twice, and the bytes differ");
     assert_eq!(check(&file, &Limits::default()), Ok(()), "what the encoder wrote is refused");
 
     // Doing it twice changes nothing more.
-    let mesh = ProgressiveMesh { positions: options.positions.quantised(&mesh.positions), ..mesh };
+    let positions = options.positions.quantised(&mesh.positions);
+    let mesh = ProgressiveMesh { positions, wedges: options.quantised_wedges(&mesh.wedges), ..mesh };
     assert_eq!(options.positions.quantised(&mesh.positions), mesh.positions);
+    assert_eq!(options.quantised_wedges(&mesh.wedges).normals, mesh.wedges.normals);
     let arranged = options.arranged(&mesh);
     let levels = expected_levels(&arranged);
     let mut decoder = Decoder::new(Limits::default());
@@ -67,16 +66,6 @@ fn choose_options(choices: &mut Choices<'_>) -> EncodeOptions {
     let positions = Positions::ALL[usize::from(choices.byte()) % Positions::ALL.len()];
     let mode = Mode::ALL[usize::from(choices.byte()) % Mode::ALL.len()];
     EncodeOptions { packets, positions, mode, ..EncodeOptions::new() }
-}
-
-/// Leaves one wedge a vertex, without attributes, and no materials.
-fn strip_attributes(mesh: &mut ProgressiveMesh) {
-    let owners = std::mem::take(&mut mesh.wedges.vertices);
-    let vertex = |wedge: &u32| owners[*wedge as usize];
-    mesh.faces.iter_mut().for_each(|face| *face = face.map(|wedge| vertex(&wedge)));
-    mesh.wedges = Wedges { vertices: (0..mesh.positions.len() as u32).collect(), ..Wedges::default() };
-    mesh.wedge_collapse.clone_from(&mesh.collapse);
-    mesh.materials.clear();
 }
 
 /// The faces of a level by the positions of their corners, in an order that depends on nothing else.

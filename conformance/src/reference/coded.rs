@@ -1,13 +1,15 @@
 //! Packets of mode `coded`: `spec/pmesh.md`, section 8, turned into the payload of a raw packet that says the same.
 
+mod attributes;
 mod cells;
 mod cut;
 mod symbols;
 
-use pmesh_format::{Header, PacketEntry};
+use pmesh_format::{Attributes, Header, PacketEntry};
 
 use super::Fault;
 use super::starts::{ALONG, HEIGHTS};
+use attributes::{Values, Wedged};
 use cells::Cells;
 use cut::{ordered, run};
 use symbols::{Binary, Sixteen, Symbols, residual};
@@ -60,6 +62,7 @@ pub(super) struct Coded {
     packets: usize,
     known: Vec<Known>,
     corners: Vec<[usize; 3]>,
+    wedged: Wedged,
 }
 
 /// What a packet brings, in the order of a raw one.
@@ -70,6 +73,8 @@ struct Brought {
     parents: Vec<usize>,
     /// Switch codes of one bit, canonical order.
     codes: Vec<bool>,
+    /// What there is of wedges, if there are attributes.
+    values: Option<Values>,
 }
 
 /// A face at a vertex: its slot, the two vertices that follow.
@@ -125,7 +130,7 @@ impl Coded {
             along: ALONG.iter().map(Sixteen::new).collect(),
             heights: HEIGHTS.iter().map(Sixteen::new).collect(),
         };
-        Self { models, packets: 0, known: Vec::new(), corners: Vec::new() }
+        Self { models, packets: 0, known: Vec::new(), corners: Vec::new(), wedged: Wedged::new() }
     }
 
     /// The payload of a raw packet that says the same.
@@ -173,11 +178,16 @@ impl Coded {
         if self.corners.len() != entry.faces.end as usize {
             return fault(CODED_FACES);
         }
+        if header.attributes != Attributes::default() {
+            let cells: Vec<Cell> = self.known.iter().map(|known| known.cell).collect();
+            brought.values = Some(self.wedged.read(&mut symbols, header, entry, &cells, &brought)?);
+        }
         if symbols.missing || symbols.x != 1 << 16 {
             return fault(CODED_LENGTH);
         }
         let faces = (entry.faces.end - entry.faces.start) as usize;
-        let demanded = (4 + (end - start + faces) / 4 + start / 64).max(looked_at.div_ceil(64));
+        let wedges = (entry.wedges.end - entry.wedges.start) as usize;
+        let demanded = (4 + (wedges + faces) / 4 + start / 64).max(looked_at.div_ceil(64));
         let left = symbols.at;
         if left < payload.len() && payload.len() > demanded {
             return Err(Fault { code: CODED_LENGTH, at: left });
@@ -444,9 +454,17 @@ impl Brought {
     fn payload(self) -> Vec<u8> {
         let word = |n: &usize| (*n as u32).to_le_bytes();
         let mut out = self.positions;
-        out.extend(self.faces.as_flattened().iter().flat_map(word));
+        let mut values = self.values.unwrap_or_default();
+        out.extend(values.wedges);
+        let faces = if values.corners.is_empty() { self.faces } else { values.corners };
+        out.extend(faces.as_flattened().iter().flat_map(word));
         out.extend(self.parents.iter().flat_map(word));
-        for eight in self.codes.chunks(8) {
+        out.extend(values.materials);
+        out.extend(values.numbers);
+        if values.codes.is_empty() {
+            values.codes = self.codes;
+        }
+        for eight in values.codes.chunks(8) {
             out.push(eight.iter().rev().fold(0, |byte, &code| 2 * byte + u8::from(code)));
         }
         out

@@ -9,6 +9,7 @@ use super::{Changes, Fault, LENGTH, SLOTS_A_BYTE, State, least_bytes};
 use crate::bits::Bits;
 use crate::code::codes;
 use crate::header::{Header, PacketEntry};
+use crate::lattice::Lattice;
 
 impl State {
     /// Reads the next packet: the payload of a raw packet that says the same.
@@ -22,12 +23,16 @@ impl State {
         payload: &[u8],
     ) -> Result<Vec<u8>, Fault> {
         let (models, packets) = (self.models.clone(), self.packets);
+        let attributes = self.wedged.as_ref().map(|wedged| wedged.models());
         let mut changes = Changes::default();
         let read = self.read_packet(header, entry, payload, &mut changes);
         if read.is_err() {
             self.take_back(entry, &changes);
             self.models = models;
             self.packets = packets;
+            if let (Some(wedged), Some(models)) = (&mut self.wedged, attributes) {
+                wedged.set_models(models);
+            }
         }
         read.map(|()| self.raw(entry, &changes))
     }
@@ -42,13 +47,12 @@ impl State {
         let bounds = Bounds::new(header.bounds, header.positions, payload.len() as u64);
         let mut reader = Reader::new(payload).ok_or(LENGTH)?;
         self.packet(&mut reader, &Nothing, extent, bounds, changes)?;
+        self.attributes(&mut reader, None, extent, changes)?;
         if !reader.at_end() {
             return Err(LENGTH);
         }
         let left = reader.left().count();
-        let count = |range: &core::ops::Range<u32>| range.end - range.start;
-        let least = least_bytes(extent.vertices.start, count(&extent.vertices), count(&extent.faces));
-        let needed = least.max(changes.looked_at.div_ceil(SLOTS_A_BYTE));
+        let needed = least_bytes(extent).max(changes.looked_at.div_ceil(SLOTS_A_BYTE));
         // Padding is for what has to be long enough, and for nothing else.
         if left > 0 && payload.len() as u64 > needed {
             return Err((codes::CODED_LENGTH, payload.len() - left));
@@ -56,7 +60,20 @@ impl State {
         if reader.left().any(|byte| byte != 0) {
             return Err((codes::CODED_PADDING, payload.len() - left));
         }
+        if !self.are_finite(header, extent) {
+            return Err((codes::POSITION, 0));
+        }
         Ok(())
+    }
+
+    /// Whether the positions of a packet are finite (PMESH-POS-04): in a box near the greatest numbers there are, points beyond
+    /// its sides may not be.
+    fn are_finite(&self, header: &Header, extent: &PacketEntry) -> bool {
+        let Some(bits) = header.positions.bits() else { return true };
+        let lattice = Lattice::new(header.bounds, bits);
+        let finite = |point: [u32; 3]| lattice.position(point).iter().all(|x| x.is_finite());
+        let mut brought = extent.vertices.clone();
+        finite(lattice.top()) || brought.all(|vertex| finite(self.cell(vertex).map(|x| x as u32)))
     }
 
     /// What a packet has brought, as the payload of a raw one (PMESH-PKT-02).
@@ -74,11 +91,23 @@ impl State {
             let [x, y, z] = self.cell(vertex).map(|x| (x as u16).to_le_bytes());
             out.extend_from_slice([x, y, z, [0, 0]].as_flattened());
         }
-        for corner in changes.introduced.as_flattened() {
+        let wedged = self.wedged.as_deref();
+        if let Some(wedged) = wedged {
+            wedged.raw_values(extent, &mut out);
+        }
+        let introduced = wedged.map_or(&changes.introduced[..], |_| changes.wedges.introduced());
+        for corner in introduced.as_flattened() {
             out.extend_from_slice(&corner.to_le_bytes());
         }
         for parent in &self.parents[self.parents.len() - splits..] {
             out.extend_from_slice(&parent.to_le_bytes());
+        }
+        if let Some(wedged) = wedged {
+            wedged.raw_tables(extent, self, &mut out);
+            if let Some(switches) = wedged.raw_switches(&changes.wedges) {
+                out.extend_from_slice(&switches);
+                return out;
+            }
         }
         let mut bits = Bits::default();
         let (mut masks, mut long) = (changes.masks.iter(), &changes.long[..]);

@@ -62,13 +62,21 @@ pub(crate) fn arranged(mesh: &ProgressiveMesh, ends: &[u32]) -> ProgressiveMesh 
         let count = mesh.wedges.vertices[before..].partition_point(|&v| v == vertex);
         wedge_starts.push(before + count);
     }
-    let old_wedges: Vec<usize> =
-        old.iter().flat_map(|&v| wedge_starts[v as usize]..wedge_starts[v as usize + 1]).collect();
-    let mut new_wedges = alloc::vec![0u32; old_wedges.len()];
-    for (wedge, &was) in (0u32..).zip(&old_wedges) {
-        new_wedges[was] = wedge;
-    }
     let base_wedges = mesh.base_wedges();
+    let mut old_wedges: Vec<usize> = Vec::with_capacity(mesh.wedges.len());
+    let mut new_wedges = alloc::vec![0u32; mesh.wedges.len()];
+    for &vertex in &old {
+        let first = old_wedges.len();
+        old_wedges.extend(wedge_starts[vertex as usize]..wedge_starts[vertex as usize + 1]);
+        if vertex >= base {
+            // What wedges become then rises from each to the next, which is what a reader expects.
+            old_wedges[first..]
+                .sort_by_key(|&was| new_wedges[mesh.wedge_collapse[was - base_wedges] as usize]);
+        }
+        for (wedge, &was) in (first as u32..).zip(&old_wedges[first..]) {
+            new_wedges[was] = wedge;
+        }
+    }
     let mut result = ProgressiveMesh {
         origin: mesh.origin,
         positions: old.iter().map(|&v| mesh.positions[v as usize]).collect(),

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::geometry::Cell;
 use super::rans::Writer;
 use super::walk::{Bounds, Source};
-use super::{Changes, SLOTS_A_BYTE, State, least_bytes};
+use super::{Changes, Given, Plan, SLOTS_A_BYTE, State, least_bytes};
 use crate::header::PacketEntry;
 use crate::progressive::ProgressiveMesh;
 use crate::storage::Positions;
@@ -14,11 +14,13 @@ use crate::storage::Positions;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known<'a> {
     pub(crate) mesh: &'a ProgressiveMesh,
-    /// Level of introduction, corners as mapped there, and index in the mesh of each face.
+    /// Level of introduction, vertices as mapped there, and index in the mesh of each face.
     pub(crate) faces: &'a [(u32, [u32; 3], usize)],
     /// Switch codes of all vertices, each in descending order of slots, and where those of each lie.
     pub(crate) switches: (&'a [u32], &'a [(usize, usize)]),
     pub(crate) cells: &'a [Cell],
+    /// Where there are attributes: what is known of wedges, and how it is stored.
+    pub(crate) wedges: Option<(Plan, Given<'a>)>,
 }
 
 /// Writes packet after packet.
@@ -38,7 +40,11 @@ impl<'a> Saver<'a> {
     /// Of positions in that box, stored that way.
     pub(crate) fn new(known: Known<'a>, bounds: [[f32; 3]; 2], positions: Positions) -> Self {
         let bounds = Bounds::new(bounds, positions, u64::MAX);
-        Self { state: State::new(known.mesh.base_vertices), known, bounds }
+        Self {
+            state: State::new(known.mesh.base_vertices, known.wedges.map(|(plan, _)| plan)),
+            known,
+            bounds,
+        }
     }
 
     /// The payload of the next packet.
@@ -46,11 +52,11 @@ impl<'a> Saver<'a> {
         let mut coder = Writer::default();
         let mut changes = Changes::default();
         let coded = self.state.packet(&mut coder, &self.known, extent, self.bounds, &mut changes);
+        let given = self.known.wedges.as_ref().map(|(_, given)| given);
+        let coded = coded.and_then(|()| self.state.attributes(&mut coder, given, extent, &mut changes));
         debug_assert_eq!(coded, Ok(()), "a mesh that was checked");
         let mut payload = coder.finish();
-        let count = |range: &core::ops::Range<u32>| range.end - range.start;
-        let least = least_bytes(extent.vertices.start, count(&extent.vertices), count(&extent.faces));
-        let least = least.max(changes.looked_at.div_ceil(SLOTS_A_BYTE)) as usize;
+        let least = least_bytes(extent).max(changes.looked_at.div_ceil(SLOTS_A_BYTE)) as usize;
         payload.resize(payload.len().max(least), 0);
         payload
     }

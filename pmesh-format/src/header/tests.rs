@@ -56,7 +56,9 @@ fn every_defect_of_header_and_directory_has_its_code_and_its_place() {
         ("COUNTS", 72, |p| put32(&mut p.specific, 16, 0)),
         ("COUNTS", 72, |p| put32(&mut p.specific, 16, 32)),
         ("MODE_FORBIDDEN", 76, |p| p.specific[20] = 0),
-        ("MODE_UNKNOWN", 76, |p| p.specific[20] = 2),
+        ("MODE_UNKNOWN", 76, |p| p.specific[20] = 3),
+        // Coded attributes without their parameters.
+        ("PARAMETERS", 128, |p| p.specific[20] = 2),
         ("POSITIONS_FORBIDDEN", 77, |p| p.specific[21] = 0),
         ("POSITIONS_UNKNOWN", 77, |p| p.specific[21] = 9),
         ("RESERVED", 78, |p| p.specific[22] |= 32),

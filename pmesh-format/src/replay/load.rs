@@ -11,7 +11,7 @@ use zerocopy::little_endian::{U16, U32};
 use super::Replay;
 use crate::attributes::Attributes;
 use crate::code::codes;
-use crate::coded::{Live, State};
+use crate::coded::{Live, Plan, State};
 use crate::lattice::Lattice;
 use crate::packet::{Packet, Varints};
 use crate::room::reserve;
@@ -40,8 +40,8 @@ impl Replay {
         if self.attributes() == Attributes::default() {
             return self.load_live(packet);
         }
-        let base = self.base();
-        let mut coded = self.coded.take().unwrap_or_else(|| Box::new(State::new(base)));
+        let new = || Box::new(State::new(self.header.base_vertices, Plan::new(&self.header)));
+        let mut coded = self.coded.take().unwrap_or_else(new);
         let read = coded.read(&self.header, packet.entry(), packet.payload());
         self.coded = Some(coded);
         self.load_payload(packet, &read?)
@@ -51,7 +51,7 @@ impl Replay {
     fn load_live(&mut self, packet: &Packet<'_>) -> Result<(), Fault> {
         let entry = packet.entry();
         let base = self.base();
-        let mut coded = self.coded.take().unwrap_or_else(|| Box::new(State::new(base)));
+        let mut coded = self.coded.take().unwrap_or_else(|| Box::new(State::new(base, None)));
         let live = Live {
             positions: &mut self.positions,
             corners: &mut self.corners,

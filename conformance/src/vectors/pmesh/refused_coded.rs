@@ -2,7 +2,7 @@
 //! which a reader reports what is wanted.
 
 use super::super::Refused;
-use super::super::edit::{in_envelope, in_header};
+use super::super::edit::in_envelope;
 use super::refused::{in_directory, payload, with_payload};
 use super::{RECORD_HEAD, entry, header, packet};
 use ivg_wire::{Code, Part};
@@ -12,6 +12,7 @@ const CLOSED: &str = "0033-coded-q12";
 const EXACT: &str = "0030-coded-f32";
 const IRREGULAR: &str = "0043-coded-irregular";
 const TRIANGLE: &str = "0041-coded-triangle";
+const ATTRIBUTES: &str = "0051-coded-attributes";
 const HUB: &str = "0050-coded-hub";
 
 pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
@@ -19,6 +20,7 @@ pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
     let last = header(closed).packet_count() - 1;
     let whole = payload(closed, last);
     let faces = header(closed).packets[1].faces.end;
+    let wedges = header(twin(ATTRIBUTES)).packets[0].wedges.end;
     let hub = payload(twin(HUB), 0);
     let search = |name: &'static str, mistake: &'static str, code: Code, why: &'static str| {
         (name, mistake, code, one_byte(twin(name), code), why)
@@ -39,12 +41,19 @@ pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             "a word behind the last symbol of a packet that is long enough",
         ),
         (
-            TRIANGLE,
-            "coded-attributes",
-            mesh::MODE_UNKNOWN,
-            in_header(twin(TRIANGLE), super::at::ATTRIBUTES, &[8]),
-            "materials, which no coded packet has yet",
+            ATTRIBUTES,
+            "coded-wedges-few",
+            mesh::WEDGE_COUNT,
+            in_directory(twin(ATTRIBUTES), 0, entry::END_WEDGE, wedges + 1),
+            "the directory gives a packet a wedge more than it brings",
         ),
+        search(
+            ATTRIBUTES,
+            "coded-switch",
+            mesh::SWITCH,
+            "a corner switches, but no wedge becomes the one that it has",
+        ),
+        search(ATTRIBUTES, "coded-attribute", mesh::ATTRIBUTE, "a value outside what it is quantised to"),
         (
             CLOSED,
             "coded-bytes",

@@ -221,7 +221,44 @@ fn coded() -> Vec<Variant> {
             "a vertex with very many faces: the packet is as long as the work that it makes",
         ),
     ]);
+    variants.extend(coded_attributes());
     variants
+}
+
+fn coded_attributes() -> Vec<Variant> {
+    let coded = |packets| options(Mode::Coded, Positions::Quantised(12), packets);
+    let materials = grown(5, Kind { vertices: 30, seams: true, ..Kind::default() });
+    vec![
+        (
+            "0051-coded-attributes",
+            all_attributes(40),
+            coded(GROWING),
+            "normals, texture coordinates, colours, materials, and seams between these, entropy coded",
+        ),
+        (
+            "0052-coded-f32-attributes",
+            all_attributes(24),
+            EncodeOptions {
+                positions: Positions::F32,
+                normal_bits: 16,
+                uv_bits: 4,
+                ..coded(PacketSize::Fixed(5))
+            },
+            "the most bits for normals and the fewest for texture coordinates, beside positions of which nothing is lost",
+        ),
+        (
+            "0053-coded-materials",
+            materials,
+            coded(GROWING),
+            "two materials, and nothing else beside positions",
+        ),
+        (
+            "0054-coded-normals",
+            irregular(40),
+            EncodeOptions { normal_bits: 4, ..coded(PacketSize::Fixed(1)) },
+            "normals without seams, of the fewest bits, where faces are pinched and vertices have none",
+        ),
+    ]
 }
 
 pub(super) fn accepted() -> Vec<Vector> {
