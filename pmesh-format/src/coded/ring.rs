@@ -97,3 +97,6 @@ fn fans(spokes: &mut [Spoke]) {
     }
     spokes.copy_from_slice(&ordered[..count]);
 }
+
+#[cfg(test)]
+mod tests;
