@@ -42,10 +42,10 @@ pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
         ),
         (
             ATTRIBUTES,
-            "coded-wedges-few",
+            "coded-wedges-many",
             mesh::WEDGE_COUNT,
-            in_directory(twin(ATTRIBUTES), 0, entry::END_WEDGE, wedges + 1),
-            "the directory gives a packet a wedge more than it brings",
+            in_directory(twin(ATTRIBUTES), 0, entry::END_WEDGE, wedges - 1),
+            "the directory gives a packet a wedge less than it brings",
         ),
         search(
             ATTRIBUTES,
