@@ -49,7 +49,7 @@ pub(crate) fn order_meshes(
                 |error: &dyn std::fmt::Display| Failure::new(format_args!("mesh \"{}\": {error}", mesh.name));
             let (progressive, _) = pmesh_build::build(&indexed, &BuildOptions::default(), &mut progress)
                 .map_err(|error| named(&error))?;
-            let options = storage.options(SCENE_POSITIONS, &progressive).map_err(|what| named(&what))?;
+            let options = storage.options(SCENE_POSITIONS, &progressive);
             let file = pmesh_format::encode(&progressive, &options).map_err(|error| named(&error))?;
             meshes.plain_bytes += convert::plain_bytes(&progressive.full());
             meshes.vertices += progressive.positions.len() as u64;

@@ -46,7 +46,7 @@ pub(crate) struct StorageArguments {
     #[arg(long, value_parser = registry::positions())]
     pub(crate) positions: Option<Positions>,
     /// How packets are stored [default: coded; raw for a mesh with normals, texture coordinates, colours or several materials,
-    /// for which there is no coded mode yet].
+    /// which coded mode quantises].
     #[arg(long, value_parser = registry::mode())]
     pub(crate) mode: Option<Mode>,
     /// Bits of each of the two components of a normal, 4 to 16; coded mode only, raw mode stores them exactly.
@@ -70,29 +70,11 @@ impl StorageArguments {
     pub(crate) const DEFAULT: Self = Self { positions: None, mode: None, normal_bits: 10, uv_bits: 12 };
 
     /// The encoder's options for a mesh.
-    ///
-    /// # Errors
-    ///
-    /// A mesh with attributes is to be coded.
-    pub(crate) fn options(
-        &self,
-        default: Positions,
-        mesh: &ProgressiveMesh,
-    ) -> Result<EncodeOptions, &'static str> {
+    pub(crate) fn options(&self, default: Positions, mesh: &ProgressiveMesh) -> EncodeOptions {
         let Self { positions, mode, normal_bits, uv_bits } = *self;
-        let mode = match (mode, has_attributes(mesh)) {
-            (Some(Mode::Coded), true) => {
-                return Err(
-                    "there is no coded mode yet for normals, texture coordinates, colours and several materials; \
-                            leave --mode away or use --mode raw",
-                );
-            }
-            (Some(mode), _) => mode,
-            (None, true) => Mode::Raw,
-            (None, false) => Mode::Coded,
-        };
+        let mode = mode.unwrap_or(if has_attributes(mesh) { Mode::Raw } else { Mode::Coded });
         let positions = positions.unwrap_or(default);
-        Ok(EncodeOptions { positions, mode, normal_bits, uv_bits, ..EncodeOptions::default() })
+        EncodeOptions { positions, mode, normal_bits, uv_bits, ..EncodeOptions::default() }
     }
 }
 
@@ -107,12 +89,8 @@ fn has_attributes(mesh: &ProgressiveMesh) -> bool {
 
 impl MeshArguments {
     /// The encoder's options.
-    ///
-    /// # Errors
-    ///
-    /// As [`StorageArguments::options`].
-    pub(crate) fn options(&self, mesh: &ProgressiveMesh) -> Result<EncodeOptions, &'static str> {
-        let options = self.storage.options(MESH_POSITIONS, mesh)?;
+    pub(crate) fn options(&self, mesh: &ProgressiveMesh) -> EncodeOptions {
+        let options = self.storage.options(MESH_POSITIONS, mesh);
         let packets = match (self.packet, self.growth, options.packets) {
             (Some(vertices), ..) => PacketSize::Fixed(vertices),
             (None, Some(percent), PacketSize::Growing { first, most, .. }) => {
@@ -120,7 +98,7 @@ impl MeshArguments {
             }
             (None, _, packets) => packets,
         };
-        Ok(EncodeOptions { packets, ..options })
+        EncodeOptions { packets, ..options }
     }
 }
 

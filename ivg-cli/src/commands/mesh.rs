@@ -43,8 +43,7 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
     let (progressive, report) = built.map_err(|error| Failure::file(&arguments.mesh, error))?;
     watch.lap("order");
 
-    let encode_options =
-        arguments.options(&progressive).map_err(|what| Failure::file(&arguments.mesh, what))?;
+    let encode_options = arguments.options(&progressive);
     let file = pmesh_format::encode(&progressive, &encode_options)
         .map_err(|error| Failure::file(&arguments.mesh, error))?;
     watch.lap("encode");
