@@ -7,6 +7,7 @@ use super::models::{Binary, Symbols};
 use super::rans::{Coder, Reader, Writer};
 use crate::decode::{decode_all, decode_packet};
 use crate::encode::{EncodeOptions, PacketSize, encode};
+use crate::header::Header;
 use crate::limits::Limits;
 use crate::mesh::Wedges;
 use crate::progressive::ProgressiveMesh;
@@ -14,7 +15,7 @@ use crate::replay::Replay;
 use crate::storage::{Mode, Positions};
 use crate::tests::{Kind, random_mesh};
 
-fn options(positions: Positions, size: u32) -> EncodeOptions {
+pub(in crate::coded) fn options(positions: Positions, size: u32) -> EncodeOptions {
     EncodeOptions { packets: PacketSize::Fixed(size), mode: Mode::Coded, positions, ..EncodeOptions::new() }
 }
 
@@ -172,17 +173,7 @@ fn a_bad_packet_changes_nothing_and_the_right_one_can_follow() {
         }
         let before = replay.mesh();
         for seed in 0..200u64 {
-            let mut damaged = record[8..8 + entry.payload_bytes as usize].to_vec();
-            let at = splitmix64(seed, 1) as usize % damaged.len();
-            damaged[at] ^= 1 << (seed % 8);
-            if seed % 3 == 0 {
-                // Noise from there on.
-                for (k, byte) in damaged[at..].iter_mut().enumerate() {
-                    *byte = splitmix64(seed, k as u64 + 2) as u8;
-                }
-            }
-            let mut bytes = Vec::new();
-            ivg_wire::write_record(&mut bytes, index, 0, &damaged, header.content_id);
+            let bytes = damaged_record(&header, index, &record[8..8 + entry.payload_bytes as usize], seed);
             // Damage to bits that are stored as they are gives another mesh; checksums are there for that.
             let mut damaged = replay.clone();
             if damaged.apply(&decode_packet(&header, index, &bytes).unwrap()).is_err() {
@@ -250,4 +241,20 @@ fn the_bytes_of_whole_files_stay_as_they_are() {
         let file = encode(&mesh, &options(positions, 100)).unwrap();
         assert_eq!((file.len(), replayed(&file).header().content_id.0), (bytes, id), "{positions:?}");
     }
+}
+
+/// The record of a packet with one bit of its payload turned over, for every third seed with noise from there on; its checksum
+/// fits.
+pub(in crate::coded) fn damaged_record(header: &Header, index: u32, payload: &[u8], seed: u64) -> Vec<u8> {
+    let mut damaged = payload.to_vec();
+    let at = splitmix64(seed, 1) as usize % damaged.len();
+    damaged[at] ^= 1 << (seed % 8);
+    if seed.is_multiple_of(3) {
+        for (k, byte) in damaged[at..].iter_mut().enumerate() {
+            *byte = splitmix64(seed, k as u64 + 2) as u8;
+        }
+    }
+    let mut bytes = Vec::new();
+    ivg_wire::write_record(&mut bytes, index, 0, &damaged, header.content_id);
+    bytes
 }

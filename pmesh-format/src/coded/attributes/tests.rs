@@ -5,17 +5,14 @@ use ivg_wire::splitmix64;
 
 use super::Weights;
 use crate::code::codes;
+use crate::coded::tests::{damaged_record, options};
 use crate::decode::decode_packet;
-use crate::encode::{EncodeOptions, PacketSize, encode};
+use crate::encode::{EncodeOptions, encode};
 use crate::mesh::{IndexedMesh, Wedges};
 use crate::progressive::ProgressiveMesh;
 use crate::replay::Replay;
 use crate::storage::{Mode, Positions};
 use crate::tests::{Kind, expected, random_mesh, replay_all};
-
-fn options(positions: Positions, size: u32) -> EncodeOptions {
-    EncodeOptions { packets: PacketSize::Fixed(size), mode: Mode::Coded, positions, ..EncodeOptions::new() }
-}
 
 /// An indexed mesh with the obvious order: each vertex, the last first, onto the nearest earlier one that it shares a face with by
 /// then, one without faces onto vertex 0; each wedge becomes the one that a face beside it has there.
@@ -401,17 +398,8 @@ fn a_packet_that_fails_in_its_attributes_changes_nothing() {
             }
             let before = replay.mesh();
             for seed in 0..seeds {
-                let mut damaged = record[8..8 + entry.payload_bytes as usize].to_vec();
-                let at = splitmix64(seed, 1) as usize % damaged.len();
-                damaged[at] ^= 1 << (seed % 8);
-                if seed % 3 == 0 {
-                    // Noise from there on.
-                    for (k, byte) in damaged[at..].iter_mut().enumerate() {
-                        *byte = splitmix64(seed, k as u64 + 2) as u8;
-                    }
-                }
-                let mut bytes = Vec::new();
-                ivg_wire::write_record(&mut bytes, index, 0, &damaged, header.content_id);
+                let bytes =
+                    damaged_record(&header, index, &record[8..8 + entry.payload_bytes as usize], seed);
                 let mut damaged = replay.clone();
                 if let Err(error) = damaged.apply(&decode_packet(&header, index, &bytes).unwrap()) {
                     refused.push(error.code());
