@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use ivg_scene::{Material, Mesh, Scene};
-use pmesh_format::{Header, IndexedMesh, Wedges};
+use pmesh_format::{IndexedMesh, Wedges};
 
 use crate::failure::Failure;
 
@@ -78,13 +78,4 @@ pub(crate) fn plain_bytes(mesh: &IndexedMesh) -> u64 {
     // A mesh with attributes is drawn by wedge, so it stores a position for each.
     let positions = if attributes > 0 { vertices.len() } else { mesh.positions.len() };
     (positions * 12 + attributes + mesh.triangles.len() * 12) as u64
-}
-
-/// How far a coordinate can be from what was written: half a step of the lattice \[m\]; 0 where positions are exact.
-pub(crate) fn position_error(header: &Header) -> f64 {
-    let Some(bits) = header.positions.bits() else { return 0.0 };
-    let [low, high] = header.bounds;
-    let longest =
-        low.iter().zip(&high).map(|(&low, &high)| f64::from(high) - f64::from(low)).fold(0.0, f64::max);
-    longest / f64::from((1u32 << bits) - 1) / 2.0
 }

@@ -19,6 +19,7 @@ mod picture;
 mod points;
 mod progress;
 mod reading;
+mod rounding;
 mod scene_args;
 mod table;
 mod writing;

@@ -111,6 +111,9 @@ fn packets_have_the_wanted_number_of_vertices() {
         (&["--positions", "q9"], "q10"),
         (&["--mode", "zip"], "raw"),
         (&["--normal-bits", "17"], "4..=16"),
+        (&["--uv-bits", "3"], "4..=16"),
+        (&["--mode", "raw", "--uv-bits", "8"], "--uv-bits is for --mode coded"),
+        (&["--mode", "raw", "--normal-bits", "8"], "--normal-bits is for --mode coded"),
     ] {
         let output = place.run(&[&["mesh", "sheet.obj", "-o", "bad.pmesh"], options].concat());
         assert_eq!(output.status.code(), Some(2), "{options:?}");
@@ -237,7 +240,7 @@ fn a_picture_takes_levels_as_coarse_as_its_pixels_allow() {
 }
 
 #[test]
-fn a_mesh_is_coded_unless_it_has_attributes() {
+fn a_mesh_is_coded_unless_told_otherwise_and_says_what_is_rounded() {
     let place = Workplace::new();
     place.write("cube.obj", cube().as_bytes());
     place.write("sheet.obj", sheet(30).as_bytes());
@@ -256,8 +259,23 @@ fn a_mesh_is_coded_unless_it_has_attributes() {
     assert!((error - 29.0 / 16383.0 / 2.0).abs() < 1e-9, "{error}");
     let raw = report("sheet", &["--mode", "raw", "--positions", "f32"]);
     assert!(2 * coded["bytes"].as_u64().unwrap() < raw["bytes"].as_u64().unwrap(), "{coded} {raw}");
-    assert_eq!(said(&report("cube", &[])), ("raw".into(), "q14".into()));
-    assert_eq!(said(&report("cube", &["--mode", "coded"])), ("coded".into(), "q14".into()));
+    let cube = report("cube", &[]);
+    assert_eq!(said(&cube), ("coded".into(), "q14".into()));
+    let bounds = |report: &Value| {
+        ["position_error_m", "normal_error_degrees", "uv_error"]
+            .map(|key| report[key].as_f64().expect("a number"))
+    };
+    assert!(bounds(&cube).iter().all(|&bound| bound > 0.0), "{cube}");
+    assert_eq!(bounds(&json(&place.ok(&["info", "cube.pmesh", "--json"]))), bounds(&cube));
+    let shown = text(&place.ok(&["mesh", "cube.obj", "-o", "cube.pmesh"]));
+    assert!(shown.contains("degrees in a normal") && shown.contains("--mode raw --positions f32"), "{shown}");
+    let finer = report("cube", &["--normal-bits", "16", "--uv-bits", "16"]);
+    assert!(bounds(&finer)[1] < bounds(&cube)[1] / 60.0 && bounds(&finer)[2] < bounds(&cube)[2] / 10.0);
+    let exact = report("cube", &["--mode", "raw", "--positions", "f32"]);
+    assert_eq!(bounds(&exact), [0.0; 3]);
+    let shown =
+        text(&place.ok(&["mesh", "cube.obj", "-o", "cube.pmesh", "--mode", "raw", "--positions", "f32"]));
+    assert!(shown.contains("\nnothing is rounded\n"), "{shown}");
 
     // Exact positions come back as they were, whichever way they were stored.
     let exact = |mode: &str| {

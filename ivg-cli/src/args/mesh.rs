@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use pmesh_build::Cost;
-use pmesh_format::{EncodeOptions, Mode, PacketSize, Positions, ProgressiveMesh, Wedges};
+use pmesh_format::{EncodeOptions, Mode, PacketSize, Positions};
 
 use super::registry;
+use crate::failure::Failure;
 
 #[derive(Debug, Args)]
 pub(crate) struct MeshArguments {
@@ -45,17 +46,16 @@ pub(crate) struct StorageArguments {
     /// longest side of the mesh [default: q14 for a mesh, q16 in a scene].
     #[arg(long, value_parser = registry::positions())]
     pub(crate) positions: Option<Positions>,
-    /// How packets are stored [default: coded; raw for a mesh with normals, texture coordinates, colours or several materials,
-    /// which coded mode quantises].
-    #[arg(long, value_parser = registry::mode())]
-    pub(crate) mode: Option<Mode>,
-    /// Bits of each of the two components of a normal, 4 to 16; coded mode only, raw mode stores them exactly.
-    #[arg(long, value_name = "BITS", default_value_t = Self::DEFAULT.normal_bits, value_parser = clap::value_parser!(u8).range(4..=16))]
-    pub(crate) normal_bits: u8,
-    /// Bits of each texture coordinate between the least and the greatest of the mesh, 4 to 16; coded mode only, raw mode stores
-    /// them exactly.
-    #[arg(long, value_name = "BITS", default_value_t = Self::DEFAULT.uv_bits, value_parser = clap::value_parser!(u8).range(4..=16))]
-    pub(crate) uv_bits: u8,
+    /// How packets are stored; coded mode rounds normals and texture coordinates, raw mode with f32 positions rounds nothing.
+    #[arg(long, default_value = Mode::Coded.name(), value_parser = registry::mode())]
+    pub(crate) mode: Mode,
+    /// Bits of each of the two components of a normal, 4 to 16; coded mode only, raw mode stores them exactly [default: 10].
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u8).range(4..=16))]
+    pub(crate) normal_bits: Option<u8>,
+    /// Bits of each texture coordinate along the longer side of the box of all, 4 to 16; coded mode only, raw mode stores them
+    /// exactly [default: 12].
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u8).range(4..=16))]
+    pub(crate) uv_bits: Option<u8>,
 }
 
 /// Positions of a mesh unless others are asked for: half a step is 0.003 % of the longest side.
@@ -67,30 +67,41 @@ pub(crate) const SCENE_POSITIONS: Positions = Positions::Quantised(16);
 
 impl StorageArguments {
     /// Nothing asked for.
-    pub(crate) const DEFAULT: Self = Self { positions: None, mode: None, normal_bits: 10, uv_bits: 12 };
+    pub(crate) const DEFAULT: Self =
+        Self { positions: None, mode: Mode::Coded, normal_bits: None, uv_bits: None };
 
-    /// The encoder's options for a mesh.
-    pub(crate) fn options(&self, default: Positions, mesh: &ProgressiveMesh) -> EncodeOptions {
+    /// The encoder's options, `default` being how positions are stored unless the arguments say it.
+    ///
+    /// # Errors
+    ///
+    /// A usage error if bits are asked for that the mode does not have.
+    pub(crate) fn options(&self, default: Positions) -> Result<EncodeOptions, Failure> {
         let Self { positions, mode, normal_bits, uv_bits } = *self;
-        let mode = mode.unwrap_or(if has_attributes(mesh) { Mode::Raw } else { Mode::Coded });
-        let positions = positions.unwrap_or(default);
-        EncodeOptions { positions, mode, normal_bits, uv_bits, ..EncodeOptions::default() }
+        for (bits, name) in [(normal_bits, "--normal-bits"), (uv_bits, "--uv-bits")] {
+            if bits.is_some() && mode != Mode::Coded {
+                let what = format!("{name} is for --mode coded; raw mode stores these attributes exactly");
+                return Err(Failure::usage(what));
+            }
+        }
+        let options = EncodeOptions::default();
+        Ok(EncodeOptions {
+            positions: positions.unwrap_or(default),
+            mode,
+            normal_bits: normal_bits.unwrap_or(options.normal_bits),
+            uv_bits: uv_bits.unwrap_or(options.uv_bits),
+            ..options
+        })
     }
-}
-
-/// Whether a mesh has more than positions and faces.
-fn has_attributes(mesh: &ProgressiveMesh) -> bool {
-    let Wedges { vertices, normals, uvs, colours } = &mesh.wedges;
-    let on_wedges = !(normals.is_empty() && uvs.is_empty() && colours.is_empty());
-    on_wedges
-        || vertices.len() != mesh.positions.len()
-        || mesh.materials.iter().any(|&material| material != 0)
 }
 
 impl MeshArguments {
     /// The encoder's options.
-    pub(crate) fn options(&self, mesh: &ProgressiveMesh) -> EncodeOptions {
-        let options = self.storage.options(MESH_POSITIONS, mesh);
+    ///
+    /// # Errors
+    ///
+    /// As [`StorageArguments::options`].
+    pub(crate) fn options(&self) -> Result<EncodeOptions, Failure> {
+        let options = self.storage.options(MESH_POSITIONS)?;
         let packets = match (self.packet, self.growth, options.packets) {
             (Some(vertices), ..) => PacketSize::Fixed(vertices),
             (None, Some(percent), PacketSize::Growing { first, most, .. }) => {
@@ -98,7 +109,7 @@ impl MeshArguments {
             }
             (None, _, packets) => packets,
         };
-        EncodeOptions { packets, ..options }
+        Ok(EncodeOptions { packets, ..options })
     }
 }
 

@@ -73,7 +73,12 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<ExitCode, Failure> {
     let baked = baking::bake(&loaded, &settings(arguments))?;
     progress::say(&format!("baked {} photons in {:.1} s", baked.stats.photons, baked.elapsed.as_secs_f64()));
     let meshes = packing::order_meshes(&loaded.scene, COARSE_VERTICES, &StorageArguments::DEFAULT)?;
-    progress::say(&format!("ordered {} vertices in {:.1} s", meshes.vertices, meshes.seconds));
+    progress::say(&format!(
+        "ordered {} vertices in {:.1} s; {}",
+        meshes.vertices,
+        meshes.seconds,
+        meshes.rounding.text()
+    ));
     let directory = out.join("scene");
     let packed = packing::pack(&loaded.scene, &meshes, &baked.file, &directory, COARSE_VERTICES)?;
 

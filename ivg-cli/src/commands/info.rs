@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 use crate::args::FileArguments;
 use crate::failure::Failure;
 use crate::kind::FileKind;
-use crate::{convert, files, table};
+use crate::rounding::Rounding;
+use crate::{files, table};
 
 /// What a file says about itself: fields for people and for programs, and its parts.
 struct Description {
@@ -192,6 +193,7 @@ fn rounded(value: f64) -> Value {
 
 fn mesh_fields(header: &pmesh_format::Header, length: usize) -> Vec<(&'static str, Value)> {
     let attributes = header.attributes;
+    let rounding = Rounding::of(header);
     let named = [
         ("normals", attributes.normals),
         ("texture coordinates", attributes.uvs),
@@ -213,11 +215,13 @@ fn mesh_fields(header: &pmesh_format::Header, length: usize) -> Vec<(&'static st
         ("base_vertices", header.base_vertices.into()),
         ("mode", header.mode.name().into()),
         ("positions", header.positions.name().into()),
-        ("position_error_m", convert::position_error(header).into()),
+        ("position_error_m", rounding.position.into()),
         ("bits_per_vertex", rounded(8.0 * header.file_bytes as f64 / f64::from(header.vertex_count.max(1)))),
         ("attributes", json!(present)),
         ("normal_bits", header.normal_bits.into()),
+        ("normal_error_degrees", rounding.normal.into()),
         ("uv_bits", header.uv_bits.into()),
+        ("uv_error", rounding.uv.into()),
         ("origin", json!(header.origin)),
         ("lower_bound", json!(header.bounds[0])),
         ("upper_bound", json!(header.bounds[1])),

@@ -11,10 +11,12 @@ use crate::args::MeshArguments;
 use crate::breakdown::Breakdown;
 use crate::failure::Failure;
 use crate::progress::FractionBar;
+use crate::rounding::Rounding;
 use crate::{breakdown, convert, files, reading, table};
 
 pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
     files::require_extension(&arguments.out, &["pmesh"])?;
+    let encode_options = arguments.options()?;
     let mut watch = Watch::start();
     let scene = import::load(&arguments.mesh, &ImportOptions::default()).map_err(Failure::new)?;
     scene.check().map_err(Failure::new)?;
@@ -43,7 +45,6 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
     let (progressive, report) = built.map_err(|error| Failure::file(&arguments.mesh, error))?;
     watch.lap("order");
 
-    let encode_options = arguments.options(&progressive);
     let file = pmesh_format::encode(&progressive, &encode_options)
         .map_err(|error| Failure::file(&arguments.mesh, error))?;
     watch.lap("encode");
@@ -120,6 +121,7 @@ impl Written<'_> {
 
     fn json(&self) -> Value {
         let Self { arguments, progressive, options, header, .. } = self;
+        let rounding = Rounding::of(header);
         json!({
             "file": arguments.out,
             "bytes": self.bytes,
@@ -127,7 +129,9 @@ impl Written<'_> {
             "plain_bytes": convert::plain_bytes(&progressive.full()),
             "mode": options.mode.name(),
             "positions": options.positions.name(),
-            "position_error_m": convert::position_error(header),
+            "position_error_m": rounding.position,
+            "normal_error_degrees": rounding.normal,
+            "uv_error": rounding.uv,
             "cost": arguments.cost.name(),
             "attribute_weights_m": { "normal": arguments.normal_weight, "uv": arguments.uv_weight },
             "vertices": self.vertices(),
@@ -146,7 +150,7 @@ impl Written<'_> {
         let Self { arguments, progressive, options, header, .. } = self;
         let plain = convert::plain_bytes(&progressive.full());
         let mut text = format!(
-            "{}: {} vertices, {} wedges, {} faces, {} levels from {} vertices on\n{}, {:.1} bits a vertex ({:+.1} % against plain arrays); {} packets, {}, positions {}",
+            "{}: {} vertices, {} wedges, {} faces, {} levels from {} vertices on\n{}, {:.1} bits a vertex ({:+.1} % against plain arrays); {} packets, {}, positions {}\n{}\n",
             files::shown(&arguments.out.display().to_string()),
             self.vertices(),
             progressive.wedges.len(),
@@ -159,11 +163,8 @@ impl Written<'_> {
             header.packet_count(),
             options.mode.name(),
             options.positions.name(),
+            Rounding::of(header).text(),
         );
-        match convert::position_error(header) {
-            0.0 => text.push_str(", exact\n"),
-            error => text.push_str(&format!(", at most {error:.3e} m off in each coordinate\n")),
-        }
         for (part, bytes) in &self.breakdown {
             text.push_str(&format!("{bytes:>12} B  {part}\n"));
         }

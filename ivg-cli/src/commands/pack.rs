@@ -2,12 +2,14 @@ use std::process::ExitCode;
 
 use serde_json::json;
 
-use crate::args::PackArguments;
+use crate::args::{PackArguments, SCENE_POSITIONS};
 use crate::baking::{self, LoadedScene};
 use crate::failure::Failure;
 use crate::{files, packing, table};
 
 pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
+    // Before the bake, which takes long.
+    arguments.storage.options(SCENE_POSITIONS)?;
     let loaded = LoadedScene::open(&arguments.scene)?;
     let baked = baking::bake(&loaded, &arguments.bake)?;
     let meshes = packing::order_meshes(&loaded.scene, arguments.coarse_vertices, &arguments.storage)?;
@@ -23,6 +25,7 @@ pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
             "scene_bytes": report.scene_bytes,
             "files": files,
             "plain_mesh_bytes": meshes.plain_bytes,
+            "rounding": meshes.rounding.json(),
             "seconds": { "bake": baked.elapsed.as_secs_f64(), "order": meshes.seconds },
         });
         files::print(&format!("{figures}\n"))?;
@@ -38,8 +41,9 @@ pub(crate) fn run(arguments: &PackArguments) -> Result<ExitCode, Failure> {
             .map(|file| vec![file.uri.clone(), table::bytes(file.byte_length)]),
     );
     files::print(&format!(
-        "{}\nserve it with: ivg serve {}\n",
+        "{}\nmeshes: {}\nserve it with: ivg serve {}\n",
         table::layout(&rows, &[1]),
+        meshes.rounding.text(),
         directory.display()
     ))?;
     Ok(ExitCode::SUCCESS)
