@@ -4,12 +4,14 @@
 
 mod coded;
 mod lattice;
+mod numbers;
 mod raw;
 mod starts;
+mod switches;
 #[cfg(test)]
 mod tests;
 
-use pmesh_format::{Header, IndexedMesh, Mode, Wedges};
+use pmesh_format::{Header, IndexedMesh, Mode, PacketEntry, Wedges};
 use std::collections::BTreeMap;
 
 /// A rule that a packet breaks: its code in `spec/tables/errors.toml`, and the byte of the payload at which it is reported.
@@ -29,10 +31,12 @@ pub struct Reference<'a> {
     coded: coded::Coded,
 }
 
-/// What the packets say.
+/// What the packets say. Packets of either mode leave the same here.
 #[derive(Debug, Clone, Default)]
 struct Tables {
     packets: usize,
+    /// Vertices that are there.
+    vertices: usize,
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
@@ -45,8 +49,42 @@ struct Tables {
     materials: Vec<u16>,
     /// The corners of the faces at the finest level that is there.
     corners: Vec<[usize; 3]>,
-    /// The faces of each level from the base on, with their corners as mapped there.
-    levels: BTreeMap<usize, Vec<[usize; 3]>>,
+    /// The level from which on each face is there (PMESH-FACE-05).
+    from: Vec<usize>,
+}
+
+impl Tables {
+    /// A wedge mapped at a level (PMESH-DEF-04).
+    fn mapped(&self, mut wedge: usize, level: usize) -> usize {
+        while self.owners[wedge] >= level {
+            wedge = self.targets[&wedge];
+        }
+        wedge
+    }
+
+    /// Whether the corners of a face, mapped at a level, lie on three vertices.
+    fn is_face(&self, face: [usize; 3], level: usize) -> bool {
+        let [a, b, c] = face.map(|wedge| self.owners[self.mapped(wedge, level)]);
+        a != b && b != c && c != a
+    }
+
+    /// The wedges of a vertex.
+    fn wedges_of(&self, vertex: usize) -> Vec<usize> {
+        (0..self.owners.len()).filter(|&w| self.owners[w] == vertex).collect()
+    }
+
+    /// PMESH-FACE-05: from which level on the faces of the packet that came last are there.
+    fn introduce(&mut self, header: &Header, entry: &PacketEntry) {
+        let start = entry.vertices.start as usize;
+        let mut level = if start == 0 { header.base_vertices as usize } else { start + 1 };
+        for face in self.corners[self.from.len()..].to_vec() {
+            // Corners that lie on three vertices at a level do so at all above it.
+            while !self.is_face(face, level) {
+                level += 1;
+            }
+            self.from.push(level);
+        }
+    }
 }
 
 impl<'a> Reference<'a> {
@@ -72,12 +110,10 @@ impl<'a> Reference<'a> {
         let mut coded = self.coded.clone();
         match self.header.mode {
             Mode::Raw => raw::take(&mut tables, self.header, entry, payload)?,
-            Mode::Coded => {
-                let raw = coded.read(self.header, entry, payload)?;
-                // Of coded packets everything is reported at their beginning (PMESH-COD-06).
-                raw::take(&mut tables, self.header, entry, &raw).map_err(|fault| Fault { at: 0, ..fault })?;
-            }
+            Mode::Coded => coded.take(&mut tables, self.header, entry, payload)?,
         }
+        tables.introduce(self.header, entry);
+        tables.vertices = entry.vertices.end as usize;
         tables.packets += 1;
         self.tables = tables;
         self.coded = coded;
@@ -87,19 +123,32 @@ impl<'a> Reference<'a> {
     /// The vertex counts that there are levels of.
     #[must_use]
     pub fn levels(&self) -> Vec<u32> {
-        self.tables.levels.keys().map(|&level| level as u32).collect()
+        if self.tables.packets == 0 {
+            return Vec::new();
+        }
+        (self.header.base_vertices..=self.tables.vertices as u32).collect()
     }
 
     /// The mesh of that many vertices, without the names of materials; `None` if it is not there.
     #[must_use]
     pub fn level(&self, level: u32) -> Option<IndexedMesh> {
+        if !self.levels().contains(&level) {
+            return None;
+        }
         let tables = &self.tables;
-        let faces = tables.levels.get(&(level as usize))?;
-        let wedges = tables.owners.iter().filter(|&&owner| owner < level as usize).count();
+        let vertices = level as usize;
+        let wedges = tables.owners.iter().filter(|&&owner| owner < vertices).count();
+        let faces: Vec<[usize; 3]> = tables
+            .corners
+            .iter()
+            .zip(&tables.from)
+            .filter(|&(_, &from)| from <= vertices)
+            .map(|(face, _)| face.map(|wedge| tables.mapped(wedge, vertices)))
+            .collect();
         let number = |n: &usize| *n as u32;
         Some(IndexedMesh {
             origin: self.header.origin,
-            positions: tables.positions[..level as usize].to_vec(),
+            positions: tables.positions[..vertices].to_vec(),
             wedges: Wedges {
                 vertices: tables.owners[..wedges].iter().map(number).collect(),
                 normals: tables.normals.iter().take(wedges).copied().collect(),

@@ -1,4 +1,4 @@
-//! Packets of mode `coded`: `spec/pmesh.md`, section 8, turned into the payload of a raw packet that says the same.
+//! Packets of mode `coded`: `spec/pmesh.md`, section 8.
 
 mod attributes;
 mod cells;
@@ -7,9 +7,10 @@ mod symbols;
 
 use pmesh_format::{Attributes, Header, PacketEntry};
 
-use super::Fault;
+use super::lattice::Lattice;
 use super::starts::{ALONG, HEIGHTS};
-use attributes::{Values, Wedged};
+use super::{Fault, Tables};
+use attributes::Wedged;
 use cells::Cells;
 use cut::{ordered, run};
 use symbols::{Binary, Sixteen, Symbols, residual};
@@ -65,16 +66,21 @@ pub(super) struct Coded {
     wedged: Wedged,
 }
 
-/// What a packet brings, in the order of a raw one.
+/// What a packet brings.
 #[derive(Default)]
 struct Brought {
-    positions: Vec<u8>,
+    positions: Vec<Position>,
+    /// Vertices of the new faces where each comes.
     faces: Vec<[usize; 3]>,
     parents: Vec<usize>,
-    /// Switch codes of one bit, canonical order.
+    /// Whether each slot of the parent switches, in descending order, vertex by vertex.
     codes: Vec<bool>,
-    /// What there is of wedges, if there are attributes.
-    values: Option<Values>,
+}
+
+/// A position as it is read.
+enum Position {
+    Cell(Cell),
+    Exact([f32; 3]),
 }
 
 /// A face at a vertex: its slot, the two vertices that follow.
@@ -133,13 +139,14 @@ impl Coded {
         Self { models, packets: 0, known: Vec::new(), corners: Vec::new(), wedged: Wedged::new() }
     }
 
-    /// The payload of a raw packet that says the same.
-    pub(super) fn read(
+    /// Takes a packet.
+    pub(super) fn take(
         &mut self,
+        tables: &mut Tables,
         header: &Header,
         entry: &PacketEntry,
         payload: &[u8],
-    ) -> Result<Vec<u8>, Fault> {
+    ) -> Result<(), Fault> {
         if payload.len() < 4 {
             return fault(CODED_LENGTH);
         }
@@ -180,7 +187,7 @@ impl Coded {
         }
         if header.attributes != Attributes::default() {
             let cells: Vec<Cell> = self.known.iter().map(|known| known.cell).collect();
-            brought.values = Some(self.wedged.read(&mut symbols, header, entry, &cells, &brought)?);
+            self.wedged.read(&mut symbols, header, entry, &cells, &brought)?;
         }
         if symbols.missing || symbols.x != 1 << 16 {
             return fault(CODED_LENGTH);
@@ -196,7 +203,32 @@ impl Coded {
             return Err(Fault { code: CODED_PADDING, at: left });
         }
         self.packets += 1;
-        Ok(brought.payload())
+        self.hand_over(tables, header, &brought)
+    }
+
+    /// What there is after the packet, with corners at its end, as raw packets leave it.
+    fn hand_over(&self, tables: &mut Tables, header: &Header, brought: &Brought) -> Result<(), Fault> {
+        let lattice = Lattice::new(header.bounds, header.positions.bits().unwrap_or(1));
+        for position in &brought.positions {
+            let position = match position {
+                Position::Cell(cell) => lattice.position(*cell),
+                Position::Exact(position) => *position,
+            };
+            if !position.iter().all(|x| x.is_finite()) {
+                return fault(POSITION);
+            }
+            tables.positions.push(position);
+        }
+        let first = tables.positions.len() - brought.parents.len();
+        tables.parents.extend((first..).zip(brought.parents.iter().copied()));
+        if header.attributes == Attributes::default() {
+            tables.owners = (0..tables.positions.len()).collect();
+            tables.targets = tables.parents.clone();
+            tables.corners = self.corners.clone();
+        } else {
+            self.wedged.hand_over(tables, header);
+        }
+        Ok(())
     }
 
     /// PMESH-COD-07: which model tells whether a vertex is split (once more).
@@ -232,7 +264,7 @@ impl Coded {
             if (0..3).any(|k| cell[k] > cells.most[k]) {
                 return fault(POSITION);
             }
-            brought.positions.extend(cells.position(symbols, cell)?);
+            brought.positions.push(cells.position(symbols, cell)?);
             self.known.push(Known { cell, scale: 0, height: 0, packet: self.packets, split: false });
             if symbols.missing {
                 return fault(CODED_LENGTH);
@@ -324,7 +356,7 @@ impl Coded {
         if (0..3).any(|k| cell[k] < 0 || cell[k] > cells.most[k]) {
             return fault(POSITION);
         }
-        brought.positions.extend(cells.position(symbols, cell)?);
+        brought.positions.push(cells.position(symbols, cell)?);
         // The mesh of level v + 1.
         for spoke in ascending.iter().rev() {
             let switch = spokes.iter().zip(&switches).any(|(s, &switch)| s.slot == spoke.slot && switch);
@@ -446,27 +478,5 @@ impl Coded {
         let height = residual(symbols, &mut self.models.heights, heights / k);
         cell[main] = wrap(expected + height);
         (cell, class(2 * height.abs() + 1) % 256)
-    }
-}
-
-impl Brought {
-    /// PMESH-PKT-02.
-    fn payload(self) -> Vec<u8> {
-        let word = |n: &usize| (*n as u32).to_le_bytes();
-        let mut out = self.positions;
-        let mut values = self.values.unwrap_or_default();
-        out.extend(values.wedges);
-        let faces = if values.corners.is_empty() { self.faces } else { values.corners };
-        out.extend(faces.as_flattened().iter().flat_map(word));
-        out.extend(self.parents.iter().flat_map(word));
-        out.extend(values.materials);
-        out.extend(values.numbers);
-        if values.codes.is_empty() {
-            values.codes = self.codes;
-        }
-        for eight in values.codes.chunks(8) {
-            out.push(eight.iter().rev().fold(0, |byte, &code| 2 * byte + u8::from(code)));
-        }
-        out
     }
 }

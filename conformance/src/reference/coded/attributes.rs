@@ -1,8 +1,8 @@
 //! Attributes of coded packets: `spec/pmesh.md`, PMESH-COD-13 to -17.
 
-use super::super::Fault;
 use super::super::lattice::Lattice;
 use super::super::starts::HEIGHTS;
+use super::super::{Fault, Tables};
 use super::symbols::{Binary, Sixteen, Symbols, residual};
 use super::{Brought, CODED_LENGTH, CORNER, Cell, bits, class, fault, minus};
 use pmesh_format::{Attributes, Header, PacketEntry};
@@ -40,19 +40,6 @@ pub(super) struct Wedged {
     uvs: Vec<[i64; 2]>,
     colours: Vec<[i64; 4]>,
     materials: Vec<u16>,
-}
-
-/// Arrays of a raw packet.
-#[derive(Debug, Default)]
-pub(super) struct Values {
-    /// Normals, texture coordinates, colours.
-    pub(super) wedges: Vec<u8>,
-    pub(super) corners: Vec<[usize; 3]>,
-    pub(super) materials: Vec<u8>,
-    /// Numbers of wedges, and what they become, in variable length.
-    pub(super) numbers: Vec<u8>,
-    /// Switch codes in canonical order.
-    pub(super) codes: Vec<bool>,
 }
 
 /// PMESH-COD-16, PMESH-COD-17: how values are stored.
@@ -101,22 +88,14 @@ impl Wedged {
         entry: &PacketEntry,
         cells: &[Cell],
         brought: &Brought,
-    ) -> Result<Values, Fault> {
-        let [low, high] = header.uv_bounds.map(|[u, v]| [u, v, 0.0]);
-        let plan = Plan {
-            has: header.attributes,
-            most: (1 << header.normal_bits >> 1) - 1,
-            lattice: Lattice::new([low, high], header.uv_bits.max(1)),
-        };
-        let (base, wedges_before) = (header.base_vertices as usize, self.owners.len());
-        let faces_before = self.corners.len();
-        let mut values = Values::default();
-        let mut counts = Vec::new();
+    ) -> Result<(), Fault> {
+        let plan = Plan::new(header);
+        let base = header.base_vertices as usize;
         let most = entry.wedges.end as usize;
         let mut faces = brought.faces.iter().copied().peekable();
         if (entry.vertices.start as usize) < base {
             for vertex in 0..base {
-                counts.push(self.number(symbols, &plan, vertex, 1, most)?);
+                self.number(symbols, &plan, vertex, 1, most)?;
                 self.targets.resize(self.owners.len(), 0);
                 if symbols.missing {
                     return fault(CODED_LENGTH);
@@ -134,7 +113,6 @@ impl Wedged {
                     self.materials.push(symbols.raw(16) as u16);
                 }
                 self.corners.push(corners);
-                values.corners.push(corners);
                 if symbols.missing {
                     return fault(CODED_LENGTH);
                 }
@@ -149,10 +127,9 @@ impl Wedged {
         let mut codes = brought.codes.iter().copied();
         let first = (entry.vertices.start as usize).max(base);
         for (v, &p) in (first..).zip(&brought.parents) {
-            counts.push(self.split(symbols, &plan, v, p, most, &mut codes, &mut values)?);
+            self.split(symbols, &plan, v, p, most, &mut codes)?;
             while let Some(face) = faces.next_if(|face| face.iter().all(|&x| x <= v)) {
                 self.face(symbols, &plan, v, p, face)?;
-                values.corners.extend(self.corners.last());
             }
             for wedge in self.of(v) {
                 self.values(symbols, &plan, v, wedge, cells)?;
@@ -164,8 +141,7 @@ impl Wedged {
         if self.owners.len() != most {
             return fault(WEDGE_COUNT);
         }
-        self.fill(&mut values, &plan, wedges_before, faces_before, &counts, first);
-        Ok(values)
+        Ok(())
     }
 
     fn of(&self, vertex: usize) -> Vec<usize> {
@@ -210,8 +186,7 @@ impl Wedged {
         p: usize,
         most: usize,
         codes: &mut impl Iterator<Item = bool>,
-        values: &mut Values,
-    ) -> Result<usize, Fault> {
+    ) -> Result<(), Fault> {
         let slots = self.slots(p);
         let mut switches: Vec<bool> = codes.take(slots.len()).collect();
         switches.reverse();
@@ -237,9 +212,9 @@ impl Wedged {
             }
             self.targets.push(target);
         }
-        let mut chosen = vec![0; slots.len()];
         let mut before = None;
-        for (k, &slot) in slots.iter().enumerate().filter(|&(k, _)| switches[k]) {
+        let mut chosen = Vec::new();
+        for (&slot, _) in slots.iter().zip(&switches).filter(|(_, switches)| **switches) {
             let present = self.corners[slot / 3][slot % 3];
             let among: Vec<usize> =
                 own.iter().copied().filter(|&w| !plan.has.seams || self.targets[w] == present).collect();
@@ -254,16 +229,12 @@ impl Wedged {
                 }
                 before = Some(wedge);
             }
-            chosen[k] = wedge - own[0] + 1;
+            chosen.push((slot, wedge));
         }
-        let width = bits(count as i64);
-        for (&slot, &code) in slots.iter().zip(&chosen).rev() {
-            values.codes.extend((0..width).map(|bit| code >> bit & 1 == 1));
-            if code > 0 {
-                self.corners[slot / 3][slot % 3] = own[0] + code - 1;
-            }
+        for (slot, wedge) in chosen {
+            self.corners[slot / 3][slot % 3] = wedge;
         }
-        Ok(count)
+        Ok(())
     }
 
     /// PMESH-COD-14, 4 and 5.
@@ -434,52 +405,28 @@ impl Wedged {
         Ok(())
     }
 
-    /// PMESH-PKT-02: what a raw packet has of it.
-    fn fill(
-        &self,
-        values: &mut Values,
-        plan: &Plan,
-        wedges: usize,
-        faces: usize,
-        counts: &[usize],
-        first: usize,
-    ) {
+    /// What there is after a packet, as raw packets leave it.
+    pub(super) fn hand_over(&self, tables: &mut Tables, header: &Header) {
+        let plan = Plan::new(header);
+        tables.owners.clone_from(&self.owners);
+        tables.corners.clone_from(&self.corners);
+        tables.materials.clone_from(&self.materials);
+        let above = |&wedge: &usize| self.owners[wedge] >= header.base_vertices as usize;
+        tables.targets = (0..self.owners.len()).filter(above).map(|w| (w, self.targets[w])).collect();
         if plan.has.normals {
-            for &code in &self.normals[wedges..] {
-                let point = plan.point(code).map(|x| x as f64);
-                let root = point.iter().map(|x| x * x).sum::<f64>().sqrt();
-                values.wedges.extend(point.iter().flat_map(|x| ((x / root) as f32).to_le_bytes()));
-            }
+            tables.normals = self.normals.iter().map(|&code| plan.direction(code)).collect();
         }
         if plan.has.uvs {
-            for &[u, v] in &self.uvs[wedges..] {
+            let uv = |&[u, v]: &[i64; 2]| {
                 let [u, v, _] = plan.lattice.position([u, v, 0]);
-                values.wedges.extend([u, v].iter().flat_map(|x| x.to_le_bytes()));
-            }
+                [u, v]
+            };
+            tables.uvs = self.uvs.iter().map(uv).collect();
         }
         if plan.has.colours {
-            values.wedges.extend(self.colours[wedges..].iter().flatten().map(|&x| x as u8));
-        }
-        if plan.has.materials {
-            values.materials.extend(self.materials[faces..].iter().flat_map(|m| m.to_le_bytes()));
-        }
-        if plan.has.seams {
-            counts.iter().for_each(|&count| number(&mut values.numbers, count));
-            for wedge in (wedges..self.owners.len()).filter(|&w| self.owners[w] >= first) {
-                let target = self.targets[wedge];
-                number(&mut values.numbers, target - self.of(self.owners[target])[0]);
-            }
+            tables.colours = self.colours.iter().map(|colour| colour.map(|x| x as u8)).collect();
         }
     }
-}
-
-/// PMESH-PKT-04.
-fn number(out: &mut Vec<u8>, mut x: usize) {
-    while x > 127 {
-        out.push(128 + (x % 128) as u8);
-        x /= 128;
-    }
-    out.push(x as u8);
 }
 
 /// PMESH-COD-15: the weights of neighbours in these cells.
@@ -518,6 +465,22 @@ fn expected<const N: usize>(weights: &[i64], numbers: &[[i64; N]]) -> [i64; N] {
 }
 
 impl Plan {
+    fn new(header: &Header) -> Self {
+        let [low, high] = header.uv_bounds.map(|[u, v]| [u, v, 0.0]);
+        Self {
+            has: header.attributes,
+            most: (1 << header.normal_bits >> 1) - 1,
+            lattice: Lattice::new([low, high], header.uv_bits.max(1)),
+        }
+    }
+
+    /// The normal of a code.
+    fn direction(&self, code: [i64; 2]) -> [f32; 3] {
+        let point = self.point(code).map(|x| x as f64);
+        let root = point.iter().map(|x| x * x).sum::<f64>().sqrt();
+        point.map(|x| (x / root) as f32)
+    }
+
     fn turned(&self, [u, v]: [i64; 2]) -> [i64; 2] {
         let s = |t: i64| if t < 0 { -1 } else { 1 };
         [s(u) * (self.most - v.abs()), s(v) * (self.most - u.abs())]

@@ -3,7 +3,7 @@
 use pmesh_format::Header;
 
 use super::symbols::Symbols;
-use super::{Cell, POSITION, bits, fault, minus};
+use super::{Cell, POSITION, Position, bits, fault, minus};
 use crate::reference::Fault;
 use crate::reference::lattice::Lattice;
 
@@ -36,15 +36,12 @@ impl Cells {
         }
     }
 
-    /// The bytes of a position in a raw packet.
-    pub(super) fn position(&self, symbols: &mut Symbols<'_>, cell: Cell) -> Result<Vec<u8>, Fault> {
+    /// The position in a cell.
+    pub(super) fn position(&self, symbols: &mut Symbols<'_>, cell: Cell) -> Result<Position, Fault> {
         let Some((unit, low)) = self.unit else {
-            return Ok([cell[0], cell[1], cell[2], 0]
-                .iter()
-                .flat_map(|&q| (q as u16).to_le_bytes())
-                .collect());
+            return Ok(Position::Cell(cell));
         };
-        let mut bytes = Vec::new();
+        let mut position = [0.0; 3];
         for axis in 0..3 {
             // Numbers in ascending order: 0 is the place of +0, −1 that of −0.
             let place = |units: i64| {
@@ -68,8 +65,8 @@ impl Cells {
             if chosen > most || !(self.bounds[0][axis] <= number && number <= self.bounds[1][axis]) {
                 return fault(POSITION);
             }
-            bytes.extend(number.to_le_bytes());
+            position[axis] = number;
         }
-        Ok(bytes)
+        Ok(Position::Exact(position))
     }
 }
