@@ -77,9 +77,9 @@ impl Tables {
     fn introduce(&mut self, header: &Header, entry: &PacketEntry) {
         let start = entry.vertices.start as usize;
         let mut level = if start == 0 { header.base_vertices as usize } else { start + 1 };
-        for face in self.corners[self.from.len()..].to_vec() {
+        for face in self.from.len()..self.corners.len() {
             // Corners that lie on three vertices at a level do so at all above it.
-            while !self.is_face(face, level) {
+            while !self.is_face(self.corners[face], level) {
                 level += 1;
             }
             self.from.push(level);

@@ -5,6 +5,7 @@ pub mod edit;
 mod ivg;
 pub mod levels;
 mod manifest;
+pub mod parts;
 mod pmesh;
 mod prefix;
 mod seeds;

@@ -177,7 +177,6 @@ impl Wedged {
     }
 
     /// PMESH-COD-14, 1 to 3.
-    #[expect(clippy::too_many_arguments, reason = "all of the split")]
     fn split(
         &mut self,
         symbols: &mut Symbols<'_>,
