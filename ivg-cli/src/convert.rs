@@ -22,6 +22,7 @@ pub(crate) fn indexed_mesh(mesh: &Mesh, materials: &[Material]) -> Result<Indexe
         out.wedges.normals = mesh.shading_normals().iter().map(|n| n.to_array()).collect();
     }
     out.wedges.uvs = mesh.uvs.iter().map(|uv| uv.to_array()).collect();
+    out.wedges.colours = mesh.colours.clone();
     set_materials(&mut out, &mesh.triangle_materials, materials, &mesh.name)?;
     Ok(out)
 }
@@ -52,6 +53,7 @@ pub(crate) fn joined_mesh(scene: &Scene) -> Result<IndexedMesh, Failure> {
     if with_uvs {
         out.wedges.uvs = flat.uvs.iter().map(|uv| uv.to_array()).collect();
     }
+    out.wedges.colours = flat.colours;
     set_materials(&mut out, &flat.triangle_materials, &scene.materials, &scene.name)?;
     Ok(out)
 }

@@ -149,6 +149,92 @@ fn seams_keep_their_attributes_when_extracted() {
     assert!(positions == 6 && normals > 6, "{positions} positions, {normals} normals");
 }
 
+/// The vertices of a mesh file as text, sorted: position and colour.
+fn coloured_vertices(place: &Workplace, file: &str) -> Vec<String> {
+    let text = text(&place.read(file));
+    let mut lines: Vec<String> =
+        text.lines().filter(|line| line.starts_with("v ")).map(String::from).collect();
+    lines.sort();
+    lines
+}
+
+#[test]
+fn colours_of_vertices_go_through_to_what_is_extracted() {
+    let place = Workplace::new();
+    let n = 12;
+    let colour = |k: usize| [k * 7 % 256, k * k % 256, 255 - k].map(|byte| byte as f32 / 255.0);
+    let (mut vertices, mut ply) = (Vec::new(), String::new());
+    for k in 0..n * n {
+        let ([r, g, b], [x, y, z]) = (colour(k), [k % n, k / n, k * k % 17]);
+        vertices.push(format!("v {x} {y} {z} {r} {g} {b}"));
+        ply += &format!("{x} {y} {z} {r} {g} {b} {}\n", if k == 5 { 0.2 } else { 1.0 });
+    }
+    let mut faces = Vec::new();
+    for k in 0..(n - 1) * (n - 1) {
+        let a = k / (n - 1) * n + k % (n - 1);
+        faces.extend([[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]);
+    }
+    let obj_faces: String =
+        faces.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1)).collect();
+    place.write("sheet.obj", (vertices.join("\n") + "\n" + &obj_faces).as_bytes());
+    let properties: String =
+        "x y z red green blue alpha".split(' ').map(|name| format!("property float {name}\n")).collect();
+    let ply_faces: String = faces.iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n")).collect();
+    let (v, f) = (n * n, faces.len());
+    place.write(
+        "sheet.ply",
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex {v}\n{properties}element face {f}\n\
+             property list uchar int vertex_indices\nend_header\n{ply}{ply_faces}"
+        )
+        .as_bytes(),
+    );
+    vertices.sort();
+    for storage in [&[][..], &["--mode", "raw"]] {
+        let arguments = [&["mesh", "sheet.obj", "-o", "a.pmesh", "--positions", "f32"][..], storage].concat();
+        place.ok(&arguments);
+        let info = json(&place.ok(&["info", "a.pmesh", "--json"]));
+        assert_eq!(info["attributes"], serde_json::json!(["colours"]));
+        place.ok(&["extract", "a.pmesh", "-o", "back.obj"]);
+        assert_eq!(coloured_vertices(&place, "back.obj"), vertices, "{storage:?}");
+        // By way of .ply, whose colours have alpha, and with the alpha that .obj leaves out and says so.
+        place.ok(&["extract", "a.pmesh", "-o", "back.ply"]);
+        place.ok(&["mesh", "back.ply", "-o", "b.pmesh", "--positions", "f32"]);
+        let output = place.run(&["extract", "b.pmesh", "-o", "again.obj"]);
+        assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+        assert_eq!(coloured_vertices(&place, "again.obj"), vertices, "{storage:?}");
+        place.ok(&[&["mesh", "sheet.ply", "-o", "c.pmesh", "--positions", "f32"][..], storage].concat());
+        let output = place.run(&["extract", "c.pmesh", "-o", "clear.obj"]);
+        assert!(
+            text(&output.stderr).contains("alpha is left out; .ply holds them"),
+            "{}",
+            text(&output.stderr)
+        );
+        assert_eq!(coloured_vertices(&place, "clear.obj"), vertices, "{storage:?}");
+        place.ok(&["extract", "c.pmesh", "-o", "clear.ply"]);
+        // 0.2 of 255, in the four bytes of one vertex.
+        let [r, g, b] = colour(5).map(|channel| (channel * 255.0).round() as u8);
+        assert!(place.read("clear.ply").windows(4).any(|bytes| bytes == [r, g, b, 51]), "{storage:?}");
+    }
+}
+
+#[test]
+fn a_vertex_of_two_colours_is_two_wedges() {
+    let place = Workplace::new();
+    // Two triangles with a common edge, red and blue.
+    let red = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\n";
+    let blue = "v 1 0 0 0 0 1\nv 1 1 0 0 0 1\nv 0 1 0 0 0 1\n";
+    place.write("flag.obj", format!("{red}{blue}f 1 2 3\nf 4 5 6\n").as_bytes());
+    let report = json(&place.ok(&["mesh", "flag.obj", "-o", "flag.pmesh", "--json"]));
+    assert_eq!((report["vertices"].as_u64(), report["wedges"].as_u64()), (Some(4), Some(6)), "{report}");
+    let output = place.run(&["extract", "flag.pmesh", "-o", "back.obj"]);
+    let said = text(&output.stderr);
+    assert!(said.contains("of the colours of 2 vertices the first is written; .ply holds them"), "{said}");
+    place.ok(&["extract", "flag.pmesh", "-o", "back.ply"]);
+    let again = json(&place.ok(&["mesh", "back.ply", "-o", "again.pmesh", "--json"]));
+    assert_eq!((again["vertices"].as_u64(), again["wedges"].as_u64()), (Some(4), Some(6)), "{again}");
+}
+
 #[test]
 fn a_level_is_chosen_by_vertices_by_faces_or_by_error() {
     let place = Workplace::new();

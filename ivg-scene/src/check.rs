@@ -73,7 +73,9 @@ impl Scene {
         if let Some(i) = m.uvs.iter().position(|uv| !uv.is_finite()) {
             return Some(format!("texture coordinate of vertex {i} is not finite: {}", m.uvs[i]));
         }
-        for (what, count) in [("normals", m.normals.len()), ("texture coordinates", m.uvs.len())] {
+        for (what, count) in
+            [("normals", m.normals.len()), ("texture coordinates", m.uvs.len()), ("colours", m.colours.len())]
+        {
             if count != 0 && count != vertices {
                 return Some(format!("{count} {what} for {vertices} vertices"));
             }

@@ -45,6 +45,7 @@ impl Scene {
     pub fn flatten(&self) -> FlatScene {
         let (min, max) = self.bounds();
         let mut flat = FlatScene { origin: snapped_origin(min, max), ..FlatScene::default() };
+        let with_colours = self.nodes.iter().any(|n| !self.meshes[n.mesh as usize].colours.is_empty());
         for node in &self.nodes {
             flat.node_starts.push(flat.triangles.len() as u32);
             let mesh = &self.meshes[node.mesh as usize];
@@ -72,6 +73,10 @@ impl Scene {
                 flat.uvs.extend(std::iter::repeat_n(Vec2::ZERO, positions.len()));
             } else {
                 flat.uvs.extend_from_slice(&mesh.uvs);
+            }
+            if with_colours {
+                flat.colours.extend_from_slice(&mesh.colours);
+                flat.colours.resize(flat.positions.len() + positions.len(), [u8::MAX; 4]);
             }
             flat.positions.extend(positions);
             flat.triangles.extend(mesh.triangles.iter().map(|t| corners(t).map(|i| base + i)));

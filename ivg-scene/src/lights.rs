@@ -247,9 +247,9 @@ impl LightEntry {
             origin,
             positions: corners.map(|c| (c - origin).as_vec3()).to_vec(),
             normals: vec![normal.normalize().as_vec3(); 4],
-            uvs: Vec::new(),
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             triangle_materials: vec![scene.materials.len() as u32; 2],
+            ..Mesh::default()
         };
         scene.nodes.push(Node { name, mesh: scene.meshes.len() as u32, transform: DAffine3::IDENTITY });
         scene.materials.push(material);

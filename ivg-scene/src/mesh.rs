@@ -19,6 +19,9 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, one a vertex, or empty. (0, 0) is the upper left corner of the image.
     pub uvs: Vec<Vec2>,
+    /// Colours, one a vertex, or empty: red, green, blue in sRGB, then alpha, linear. They are carried along for whoever
+    /// shows them; light is computed from materials alone.
+    pub colours: Vec<[u8; 4]>,
     /// Corner indices into `positions`; counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
     /// Index into [`Scene::materials`](crate::Scene::materials), one a triangle.

@@ -59,6 +59,8 @@ pub struct FlatScene {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, one a vertex; zero where the mesh has none.
     pub uvs: Vec<Vec2>,
+    /// Colours as those of [`Mesh`], one a vertex, white where the mesh has none; empty if no mesh has any.
+    pub colours: Vec<[u8; 4]>,
     /// Corner indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
     /// Index into [`Scene::materials`], one a triangle.

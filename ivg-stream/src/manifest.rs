@@ -100,8 +100,8 @@ impl MeshEntry {
     }
 }
 
-/// A level of a progressive mesh as a mesh of a scene: one vertex a wedge, so that every corner keeps its normal and texture
-/// coordinate; colours, which meshes of scenes do not have, are left out. `material` gives the scene's number of a material.
+/// A level of a progressive mesh as a mesh of a scene: one vertex a wedge, so that every corner keeps its normal, texture
+/// coordinate and colour. `material` gives the scene's number of a material.
 ///
 /// # Panics
 ///
@@ -115,6 +115,7 @@ pub fn scene_mesh(mesh: &IndexedMesh, name: String, material: impl Fn(u16) -> u3
         positions: wedges.vertices.iter().map(|&v| Vec3::from_array(mesh.positions[v as usize])).collect(),
         normals: wedges.normals.iter().map(|&n| Vec3::from_array(n)).collect(),
         uvs: wedges.uvs.iter().map(|&uv| Vec2::from_array(uv)).collect(),
+        colours: wedges.colours.clone(),
         triangles: mesh.triangles.clone(),
         triangle_materials: (0..mesh.triangles.len()).map(|i| material(mesh.material(i))).collect(),
     }

@@ -3,7 +3,7 @@ use std::process::ExitCode;
 use ivg_format::{Quantity, Values};
 use ivg_grid::{FillOptions, IrradianceGrid};
 use ivg_scene::export;
-use pmesh_format::{IndexedMesh, Replay};
+use pmesh_format::{IndexedMesh, Replay, Wedges};
 
 use crate::args::ExtractArguments;
 use crate::failure::Failure;
@@ -125,8 +125,11 @@ fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
     };
     written.map_err(|error| Failure::file(&arguments.out, error))?;
     files::write(&arguments.out, &bytes)?;
-    if !mesh.wedges.colours.is_empty() {
-        eprintln!("ivg: warning: {}: the colours of the mesh are left out", arguments.out.display());
+    if extension == "obj" {
+        let lost = colours_lost(&mesh);
+        if !lost.is_empty() {
+            eprintln!("ivg: note: {}: {lost}; .ply holds them", arguments.out.display());
+        }
     }
     if extension == "ply" && mesh.wedges.len() > mesh.positions.len() {
         eprintln!(
@@ -152,6 +155,20 @@ fn wanted_level(arguments: &ExtractArguments, replay: &Replay) -> Option<u32> {
     let by_error = || arguments.error.and_then(|error| replay.level_of_error(error));
     let by_faces = || arguments.faces.and_then(|faces| replay.level_of_faces(faces));
     arguments.level.or_else(by_error).or_else(by_faces)
+}
+
+/// Which colours .obj cannot hold, for people: it has one a position, without alpha. Nothing if there is no such colour.
+fn colours_lost(mesh: &IndexedMesh) -> String {
+    let Wedges { vertices, colours, .. } = &mesh.wedges;
+    let pairs: Vec<(u32, [u8; 4])> = vertices.iter().copied().zip(colours.iter().copied()).collect();
+    let several = pairs
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter(|wedges| wedges.iter().any(|wedge| wedge.1[..3] != wedges[0].1[..3]))
+        .count();
+    let clear = colours.iter().any(|colour| colour[3] != u8::MAX);
+    let several = (several > 0).then(|| format!("of the colours of {several} vertices the first is written"));
+    let clear = clear.then(|| "alpha is left out".to_owned());
+    several.into_iter().chain(clear).collect::<Vec<_>>().join(", ")
 }
 
 /// Vertices with more than one wedge.

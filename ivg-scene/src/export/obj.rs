@@ -6,7 +6,7 @@ use crate::Mesh;
 ///
 /// Positions are written as the f64 sum of origin and position, so a mesh far from the origin loses nothing. Texture
 /// coordinates count upwards from the bottom row, as OBJ has it. A normal or texture coordinate has the number of its
-/// vertex.
+/// vertex. Colours follow the position, from 0 to 1 and without alpha, as many programs read them.
 ///
 /// # Errors
 ///
@@ -19,7 +19,7 @@ pub fn write_obj(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
 /// As [`write_obj`], with one position for vertices that are the same place with different attributes: `places` has the
 /// number of each vertex's place, counted from 0 without gaps, rising from vertex to vertex.
 ///
-/// A place has the position of its first vertex. A corner has the number of the place, and that of the vertex for its
+/// A place has the position and the colour of its first vertex. A corner has the number of the place, and that of the vertex for its
 /// normal and texture coordinate.
 ///
 /// # Errors
@@ -35,13 +35,17 @@ pub fn write_obj_joined(mesh: &Mesh, places: &[u32], out: &mut dyn Write) -> io:
         writeln!(out, "o {}", mesh.name.replace(['\n', '\r'], " "))?;
     }
     let mut next = 0;
-    for (p, &place) in mesh.positions.iter().zip(places) {
+    for (i, (p, &place)) in mesh.positions.iter().zip(places).enumerate() {
         if place < next {
             continue;
         }
         next = place + 1;
         let p = mesh.origin + p.as_dvec3();
-        writeln!(out, "v {} {} {}", p.x, p.y, p.z)?;
+        write!(out, "v {} {} {}", p.x, p.y, p.z)?;
+        if let Some([r, g, b, _]) = mesh.colours.get(i).map(|c| c.map(|byte| f32::from(byte) / 255.0)) {
+            write!(out, " {r} {g} {b}")?;
+        }
+        writeln!(out)?;
     }
     for uv in &mesh.uvs {
         writeln!(out, "vt {} {}", uv.x, 1.0 - f64::from(uv.y))?;

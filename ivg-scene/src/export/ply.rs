@@ -7,7 +7,7 @@ use crate::Mesh;
 /// Writes a mesh as binary little-endian PLY, without materials.
 ///
 /// Positions are `float` if the mesh has its origin at zero, else `double`, so nothing is lost. Texture coordinates are
-/// named `s` and `t` and count upwards from the bottom row.
+/// named `s` and `t` and count upwards from the bottom row. Colours are four `uchar`.
 ///
 /// # Errors
 ///
@@ -22,6 +22,11 @@ pub fn write_ply(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     }
     if !mesh.uvs.is_empty() {
         out.write_all(b"property float s\nproperty float t\n")?;
+    }
+    if !mesh.colours.is_empty() {
+        for name in ["red", "green", "blue", "alpha"] {
+            writeln!(out, "property uchar {name}")?;
+        }
     }
     write!(
         out,
@@ -41,6 +46,9 @@ pub fn write_ply(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
         }
         if let Some(uv) = mesh.uvs.get(i) {
             write_floats(out, [uv.x, 1.0 - uv.y])?;
+        }
+        if let Some(colour) = mesh.colours.get(i) {
+            out.write_all(colour)?;
         }
     }
     for t in &mesh.triangles {

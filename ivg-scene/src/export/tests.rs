@@ -12,6 +12,7 @@ fn everything() -> Scene {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z],
         normals: vec![Vec3::Z, Vec3::X, Vec3::Y, Vec3::NEG_Z],
         uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::new(0.3, 0.6)],
+        colours: Vec::new(),
         triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 1]],
         triangle_materials: vec![1, 1, 0],
     };
@@ -226,7 +227,15 @@ fn an_empty_scene_is_a_valid_file() {
 
 #[test]
 fn meshes_read_back_from_obj_and_ply_as_they_were() {
-    for mut mesh in everything().meshes {
+    let mut meshes = everything().meshes;
+    let mut coloured = meshes.clone();
+    for (k, mesh) in coloured.iter_mut().enumerate() {
+        // All channels of all bytes that an opaque colour can have come by.
+        mesh.colours =
+            (0..mesh.positions.len() as u8).map(|i| [i * 85 + k as u8, 17, 254 - i, 255]).collect();
+    }
+    meshes.append(&mut coloured);
+    for mut mesh in meshes {
         mesh.triangle_materials.fill(0);
         let (mut obj, mut ply) = (Vec::new(), Vec::new());
         write_obj(&mesh, &mut obj).expect("memory takes all bytes");
@@ -234,6 +243,7 @@ fn meshes_read_back_from_obj_and_ply_as_they_were() {
         for (name, bytes) in [("shape.obj", obj), ("shape.ply", ply)] {
             let back = &import::from_bytes(name, &bytes).unwrap().meshes[0];
             assert_eq!((&back.triangles, &back.normals), (&mesh.triangles, &mesh.normals), "{name}");
+            assert_eq!(back.colours, mesh.colours, "{name}");
             for (a, b) in back.positions.iter().zip(&mesh.positions) {
                 assert_eq!(back.origin + a.as_dvec3(), mesh.origin + b.as_dvec3(), "{name}");
             }
@@ -243,6 +253,25 @@ fn meshes_read_back_from_obj_and_ply_as_they_were() {
             }
         }
     }
+}
+
+#[test]
+fn every_channel_reads_back_from_obj_and_alpha_too_from_ply() {
+    let mut mesh = Mesh {
+        positions: (0..=255u8).map(|k| Vec3::new(f32::from(k), f32::from(k).powi(2), 0.0)).collect(),
+        colours: (0..=255u8).map(|k| [k, 255 - k, k.wrapping_mul(7), 255]).collect(),
+        triangles: (0..86).map(|k| [3 * k, 3 * k + 1, 3 * k + 2].map(|v| v.min(255))).collect(),
+        triangle_materials: vec![0; 86],
+        ..Mesh::default()
+    };
+    let read = |name: &str, bytes: &[u8]| import::from_bytes(name, bytes).unwrap().meshes[0].colours.clone();
+    let mut obj = Vec::new();
+    write_obj(&mesh, &mut obj).expect("memory takes all bytes");
+    assert_eq!(read("shape.obj", &obj), mesh.colours);
+    mesh.colours.iter_mut().for_each(|colour| colour[3] = colour[0]);
+    let mut ply = Vec::new();
+    write_ply(&mesh, &mut ply).expect("memory takes all bytes");
+    assert_eq!(read("shape.ply", &ply), mesh.colours);
 }
 
 #[test]

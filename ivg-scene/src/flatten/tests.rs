@@ -123,3 +123,14 @@ fn a_scene_without_triangles_has_empty_bounds() {
     assert_eq!(scene.bounds(), (DVec3::ZERO, DVec3::ZERO));
     assert_eq!(scene.flatten().node_starts, [0]);
 }
+
+#[test]
+fn meshes_without_colours_are_white_among_others() {
+    let mut scene = placed(tetrahedron(), &[DAffine3::IDENTITY]);
+    assert!(scene.flatten().colours.is_empty());
+    let colours = vec![[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12], [0; 4]];
+    scene.meshes.push(Mesh { colours: colours.clone(), ..tetrahedron() });
+    scene.nodes.extend([1, 0].map(|mesh| Node { mesh, ..scene.nodes[0].clone() }));
+    let white = vec![[255; 4]; 4];
+    assert_eq!(scene.flatten().colours, [white.clone(), colours, white].concat());
+}

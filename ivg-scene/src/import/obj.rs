@@ -14,6 +14,7 @@ use glam::{DAffine3, DVec3, Vec2, Vec3};
 
 use super::compress::MAX_FILE_BYTES;
 use super::folder::Folder;
+use super::{COLOURS_KEPT, channel};
 use crate::geometry::{repair_normals, snapped_origin};
 use crate::{Material, Mesh, Node, Scene, SceneError, Unsupported};
 use lines::CheckedLines;
@@ -47,11 +48,22 @@ pub(crate) fn read(name: &str, stem: &str, bytes: &[u8], folder: &Folder) -> Res
             what: format!("{} lines, points or curves: left out", reader.skipped_elements),
         });
     }
-    if models.iter().any(|m| !m.mesh.vertex_color.is_empty()) {
+    let colours = models.iter().flat_map(|m| &m.mesh.vertex_color);
+    let bad_colours = colours.clone().any(|&value| channel(value, 1.0).is_none());
+    let with_colours = colours.count() > 0 && !bad_colours;
+    if bad_colours {
         scene.unsupported.push(Unsupported {
             object: name.into(),
-            what: "vertex colours: left out, the material's albedo counts".into(),
+            what: "vertex colours, as some are not from 0 to 1: left out".into(),
         });
+    }
+    if with_colours {
+        scene.unsupported.push(Unsupported { object: name.into(), what: COLOURS_KEPT.into() });
+        if reader.plain_vertices > 0 {
+            scene
+                .warnings
+                .push(format!("{name}: {} vertices without a colour are white", reader.plain_vertices));
+        }
     }
     add_materials(&mut scene, &materials, folder);
     let default_material = scene.materials.len() as u32;
@@ -66,7 +78,7 @@ pub(crate) fn read(name: &str, stem: &str, bytes: &[u8], folder: &Folder) -> Res
             unknown.iter().map(|m| format!("\"{m}\"")).collect::<Vec<_>>().join(", ")
         ));
     }
-    add_meshes(&mut scene, stem, &models, default_material)?;
+    add_meshes(&mut scene, stem, &models, default_material, with_colours)?;
     drop_unused_default(&mut scene, default_material);
     Ok(scene)
 }
@@ -139,6 +151,7 @@ fn add_meshes(
     stem: &str,
     models: &[tobj::Model],
     default_material: u32,
+    with_colours: bool,
 ) -> Result<(), SceneError> {
     let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for model in models {
@@ -150,7 +163,7 @@ fn add_meshes(
     for run in models.chunk_by(|a, b| a.name == b.name) {
         let unnamed = run[0].name == "unnamed_object";
         let name = if unnamed { stem.to_owned() } else { run[0].name.clone() };
-        let mesh = merge(run, name, origin, default_material, &mut scene.warnings)?;
+        let mesh = merge(run, name, origin, default_material, with_colours, &mut scene.warnings)?;
         if mesh.triangles.is_empty() {
             continue;
         }
@@ -170,13 +183,14 @@ fn positions(mesh: &tobj::Mesh) -> impl Iterator<Item = DVec3> + '_ {
 
 /// Joins the models of one object, which tobj splits by material.
 ///
-/// Vertices that are alike in position, normal and texture coordinate become one again. Without normals they stay apart:
+/// Vertices that are alike in position, normal, texture coordinate and colour become one again. Without normals they stay apart:
 /// separate vertices at one place are then the only way a file can ask for a sharp edge.
 fn merge(
     run: &[tobj::Model],
     name: String,
     origin: DVec3,
     default_material: u32,
+    with_colours: bool,
     warnings: &mut Vec<String>,
 ) -> Result<Mesh, SceneError> {
     let complete = |values: usize, per: usize, m: &tobj::Mesh| values / per == m.positions.len() / 3;
@@ -193,7 +207,7 @@ fn merge(
         ));
     }
     let mut mesh = Mesh { name, origin, ..Mesh::default() };
-    let mut known: HashMap<[u32; 8], u32> = HashMap::new();
+    let mut known: HashMap<([u32; 8], [u8; 4]), u32> = HashMap::new();
     for source in drawn() {
         let mut remap = Vec::with_capacity(source.positions.len() / 3);
         for (i, world) in positions(source).enumerate() {
@@ -211,9 +225,16 @@ fn merge(
             } else {
                 Vec2::ZERO
             };
+            let colour = if with_colours {
+                let colour = &source.vertex_color[3 * i..3 * i + 3];
+                let byte = |k: usize| channel(colour[k], 1.0).unwrap_or(u8::MAX);
+                [byte(0), byte(1), byte(2), u8::MAX]
+            } else {
+                [u8::MAX; 4]
+            };
             let key = [p.x, p.y, p.z, n.x, n.y, n.z, uv.x, uv.y].map(f32::to_bits);
             let next = mesh.positions.len() as u32;
-            let index = if with_normals { *known.entry(key).or_insert(next) } else { next };
+            let index = if with_normals { *known.entry((key, colour)).or_insert(next) } else { next };
             if index == next {
                 mesh.positions.push(p);
                 if with_normals {
@@ -221,6 +242,9 @@ fn merge(
                 }
                 if with_uvs {
                     mesh.uvs.push(uv);
+                }
+                if with_colours {
+                    mesh.colours.push(colour);
                 }
             }
             remap.push(index);

@@ -7,6 +7,7 @@ mod values;
 
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
+use super::{COLOURS_KEPT, channel as channel_byte};
 use crate::geometry::{repair_normals, snapped_origin};
 use crate::{Material, Mesh, Node, Scene, SceneError, Unsupported};
 use header::{Element, Header, Kind, Property};
@@ -16,12 +17,20 @@ use values::Values;
 const UV_NAMES: [[&str; 2]; 4] =
     [["u", "v"], ["s", "t"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
 
+/// Names of colours that programs write; the last one may be missing.
+const COLOUR_NAMES: [[&str; 4]; 3] = [
+    ["red", "green", "blue", "alpha"],
+    ["diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"],
+    ["r", "g", "b", "a"],
+];
+
 /// What is gathered while reading.
 #[derive(Default)]
 struct Gathered {
     positions: Vec<DVec3>,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
+    colours: Vec<[u8; 4]>,
     triangles: Vec<[u32; 3]>,
     left_out: Vec<String>,
 }
@@ -48,6 +57,24 @@ pub(crate) fn read(name: &str, stem: &str, bytes: &[u8]) -> Result<Scene, SceneE
 /// The place of a property by name.
 fn find(element: &Element, name: &str) -> Option<usize> {
     element.properties.iter().position(|p| p.name == name && matches!(p.kind, Kind::Scalar(_)))
+}
+
+/// A channel of a vertex's colour.
+#[derive(Clone, Copy)]
+struct Channel {
+    property: usize,
+    /// The value of full brightness.
+    full: f64,
+}
+
+/// Where the colours of vertices are: red, green, blue and alpha, the last not always.
+fn colour_channels(element: &Element) -> Option<([Channel; 3], Option<Channel>)> {
+    let channel = |name: &str| {
+        let property = find(element, name)?;
+        let Kind::Scalar(scalar) = element.properties[property].kind else { return None };
+        Some(Channel { property, full: scalar.full_brightness()? })
+    };
+    COLOUR_NAMES.iter().find_map(|[r, g, b, a]| Some(([channel(r)?, channel(g)?, channel(b)?], channel(a))))
 }
 
 /// Reads an element's values into `row`, one a scalar property, and its list `list` into `items`.
@@ -107,8 +134,9 @@ impl Gathered {
             _ => None,
         };
         let uv = UV_NAMES.iter().find_map(|[u, v]| Some([find(element, u)?, find(element, v)?]));
-        if find(element, "red").is_some() {
-            self.left_out.push("vertex colours".into());
+        let mut channels = colour_channels(element);
+        if channels.is_none() && find(element, "red").is_some() {
+            self.left_out.push("vertex colours that are no red, green and blue of a known type".into());
         }
         let (mut row, mut items) = (vec![0.0; element.properties.len()], Vec::new());
         for i in 0..element.count {
@@ -124,6 +152,18 @@ impl Gathered {
             if let Some([u, v]) = uv {
                 // Like OBJ, PLY files count v upwards from the bottom row of the image.
                 self.uvs.push(Vec2::new(row[u] as f32, 1.0 - row[v] as f32));
+            }
+            if let Some((colour, alpha)) = channels {
+                let byte = |channel: Channel| channel_byte(row[channel.property], channel.full);
+                let bytes = colour.map(byte);
+                match (bytes, alpha.map_or(Some(u8::MAX), byte)) {
+                    ([Some(r), Some(g), Some(b)], Some(a)) => self.colours.push([r, g, b, a]),
+                    _ => {
+                        self.left_out.push(format!("vertex colours, as that of vertex {i} is out of range"));
+                        self.colours = Vec::new();
+                        channels = None;
+                    }
+                }
             }
         }
         Ok(())
@@ -201,17 +241,21 @@ impl Gathered {
             positions: self.positions.iter().map(|p| (*p - origin).as_vec3()).collect(),
             normals: self.normals,
             uvs: self.uvs,
+            colours: self.colours,
             triangle_materials: vec![0; self.triangles.len()],
             triangles: self.triangles,
         };
         repair_normals(&mut mesh);
+        let colours = (!mesh.colours.is_empty()).then(|| COLOURS_KEPT.to_owned());
         let texture = header.texture.iter().map(|t| format!("image \"{t}\""));
+        let left_out = self.left_out.into_iter().chain(texture).map(|what| format!("{what}: left out"));
         Ok(Scene {
             nodes: vec![Node { name: stem.into(), mesh: 0, transform: DAffine3::IDENTITY }],
             meshes: vec![mesh],
             materials: vec![Material::default()],
-            unsupported: (self.left_out.into_iter().chain(texture))
-                .map(|what| Unsupported { object: name.into(), what: format!("{what}: left out") })
+            unsupported: left_out
+                .chain(colours)
+                .map(|what| Unsupported { object: name.into(), what })
                 .collect(),
             ..Scene::default()
         })

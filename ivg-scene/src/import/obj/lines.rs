@@ -22,8 +22,31 @@ pub(super) struct CheckedLines<'a> {
     pub(super) error: Option<SceneError>,
     /// Polylines, points, curves and surfaces that were passed over.
     pub(super) skipped_elements: usize,
+    /// Whether vertices have colours, `v x y z r g b`: all of them, as tobj wants it; those without become white.
+    with_colours: bool,
+    /// Vertices that have become white so.
+    pub(super) plain_vertices: usize,
     /// Names after `usemtl`.
     pub(super) used_materials: BTreeSet<String>,
+}
+
+/// What tobj sees of a line.
+enum Passed {
+    /// All of it.
+    Line,
+    /// All of it and a white colour behind it.
+    White,
+    /// Only that there is one.
+    Nothing,
+}
+
+/// Whether a vertex of a file has a colour, which is six numbers.
+fn has_colours(text: &str) -> bool {
+    text.lines().any(|line| {
+        let line = line.split_once('#').map_or(line, |(line, _)| line);
+        let mut words = line.split_whitespace();
+        words.next() == Some("v") && words.count() == 6
+    })
 }
 
 /// Kinds of index in a face corner `v/vt/vn`, as error messages name them.
@@ -41,6 +64,8 @@ impl<'a> CheckedLines<'a> {
             beyond: None,
             error: None,
             skipped_elements: 0,
+            with_colours: has_colours(text),
+            plain_vertices: 0,
             used_materials: BTreeSet::new(),
         }
     }
@@ -81,17 +106,17 @@ impl<'a> CheckedLines<'a> {
             Some(at) if at > 0 && line.starts_with(['v', 'f']) => Cow::Owned(format!("{}\n", &line[..at])),
             _ => line,
         };
-        let keep = self.check(&line, number)?;
-        self.current = match line {
-            _ if !keep => Cow::Borrowed(b"\n"),
-            Cow::Borrowed(line) => Cow::Borrowed(line.as_bytes()),
-            Cow::Owned(line) => Cow::Owned(line.into_bytes()),
+        self.current = match (self.check(&line, number)?, line) {
+            (Passed::Nothing, _) => Cow::Borrowed(b"\n"),
+            (Passed::White, line) => Cow::Owned(format!("{} 1 1 1\n", line.trim_end()).into_bytes()),
+            (Passed::Line, Cow::Borrowed(line)) => Cow::Borrowed(line.as_bytes()),
+            (Passed::Line, Cow::Owned(line)) => Cow::Owned(line.into_bytes()),
         };
         Ok(())
     }
 
-    /// Whether tobj may see the line.
-    fn check(&mut self, line: &str, number: usize) -> Result<bool, SceneError> {
+    /// What of the line tobj may see.
+    fn check(&mut self, line: &str, number: usize) -> Result<Passed, SceneError> {
         let bad = |what: String| Err(SceneError::line(self.file, number, what));
         let mut words = line.split_whitespace();
         match words.next() {
@@ -113,6 +138,19 @@ impl<'a> CheckedLines<'a> {
                     return bad(format!("{} has {found} numbers instead of {needed}", INDEX_KINDS[kind]));
                 }
                 self.counts[kind] += 1;
+                if keyword == "v" && self.with_colours {
+                    match found {
+                        3 => {
+                            self.plain_vertices += 1;
+                            return Ok(Passed::White);
+                        }
+                        6 => {}
+                        _ => {
+                            let what = "where some vertices have colours, each has 3 numbers or 6";
+                            return bad(format!("vertex has {found} numbers; {what}"));
+                        }
+                    }
+                }
             }
             Some("f") => {
                 let mut corners = 0;
@@ -126,7 +164,7 @@ impl<'a> CheckedLines<'a> {
             }
             Some("l" | "p" | "curv" | "curv2" | "surf") => {
                 self.skipped_elements += 1;
-                return Ok(false);
+                return Ok(Passed::Nothing);
             }
             Some("usemtl") => {
                 let name = line.split_once(' ').unwrap_or_default().1.trim();
@@ -139,7 +177,7 @@ impl<'a> CheckedLines<'a> {
             }
             _ => {}
         }
-        Ok(true)
+        Ok(Passed::Line)
     }
 
     fn check_corner(&mut self, word: &str, number: usize) -> Result<(), SceneError> {

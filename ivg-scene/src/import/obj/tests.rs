@@ -167,6 +167,25 @@ fn normals_that_only_some_corners_have_are_computed_instead() {
 }
 
 #[test]
+fn vertices_have_colours_where_the_file_says_so_and_are_white_elsewhere() {
+    let text = "v 0 0 0 1 0.5 0 # orange\nv 1 0 0 \\\n 0 0 1\nv 0 1 0\nf 1 2 3\n";
+    let scene = read_text(text).unwrap();
+    let mesh = &scene.meshes[0];
+    assert_eq!(mesh.colours, [[255, 128, 0, 255], [0, 0, 255, 255], [255; 4]]);
+    assert_eq!(mesh.positions[1..], [Vec3::X, Vec3::Y]);
+    assert!(scene.unsupported[0].what.starts_with("vertex colours: kept"), "{:?}", scene.unsupported);
+    assert!(scene.warnings[0].contains("1 vertices without a colour are white"), "{:?}", scene.warnings);
+    assert!(read_text(&format!("{CORNERS}f 1 2 3\n")).unwrap().meshes[0].colours.is_empty());
+    // Corners of one position, normal and texture coordinate stay apart where their colours differ.
+    let twice = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 0 0 0 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 4//1 2//1 3//1\n";
+    assert_eq!(read_text(twice).unwrap().meshes[0].positions.len(), 4);
+    // Values beyond 1 are no colours of this kind; the shape is read all the same.
+    let bright = read_text("v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0 0 0 255\nf 1 2 3\n").unwrap();
+    assert!(bright.meshes[0].colours.is_empty());
+    assert!(bright.unsupported[0].what.contains("not from 0 to 1: left out"), "{:?}", bright.unsupported);
+}
+
+#[test]
 fn faults_are_named_with_their_line() {
     let check = |text: &str, line: usize, what: &str| {
         let message = read_text(text).expect_err(text).to_string();
@@ -178,6 +197,8 @@ fn faults_are_named_with_their_line() {
     check("v 0 0 inf\n", 1, "finite");
     check("v 1e999 0 0\n", 1, "finite");
     check("v 0 0 0 0\n", 1, "");
+    check("v 0 0 0 1 1 1\nv 0 0 0 1\n", 2, "vertex has 4 numbers; where some vertices have colours");
+    check("v 0 0 0 1 1\nv 0 0 0 1 1 1\n", 1, "vertex has 5 numbers");
     check("vt 1\n", 1, "1 numbers instead of 2");
     check(&format!("{CORNERS}f 1 2\n"), 5, "2 corners");
     check(&format!("{CORNERS}f 1 2 0\n"), 5, "the first one is 1");

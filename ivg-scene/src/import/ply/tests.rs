@@ -66,7 +66,61 @@ fn binary_strips_of_both_byte_orders_are_read_alike() {
     let world = mesh.origin + mesh.positions[3].as_dvec3();
     assert_eq!(world, DVec3::new(1e6 + 1.0, -2e6 + 1.0, 0.25));
     let left_out: Vec<&str> = little.unsupported.iter().map(|u| u.what.as_str()).collect();
-    assert_eq!(left_out, ["element \"camera\": left out", "vertex colours: left out"]);
+    assert_eq!(
+        left_out,
+        [
+            "element \"camera\": left out",
+            "vertex colours that are no red, green and blue of a known type: left out"
+        ]
+    );
+}
+
+/// The square with a colour of these properties, one value a channel for each vertex.
+fn coloured(properties: &str, values: [&str; 4]) -> Scene {
+    let mut text = QUAD.replace("element face", &format!("{properties}element face"));
+    for (place, value) in ["0 0 0\n", "1 0 0\n", "1 1 0\n", "0 1 0\n"].into_iter().zip(values) {
+        text = text.replace(&format!("\n{place}"), &format!("\n{} {value}\n", place.trim_end()));
+    }
+    read_text(&text).unwrap()
+}
+
+#[test]
+fn vertices_have_the_colours_of_every_common_form() {
+    let named = |kind: &str, names: &str| -> String {
+        names.split(' ').map(|name| format!("property {kind} {name}\n")).collect()
+    };
+    let opaque = [[255, 0, 51, 255], [0, 255, 0, 255], [1, 2, 3, 255], [128, 128, 128, 255]];
+    let bytes = ["255 0 51", "0 255 0", "1 2 3", "128 128 128"];
+    for names in ["red green blue", "diffuse_red diffuse_green diffuse_blue", "r g b"] {
+        let scene = coloured(&named("uchar", names), bytes);
+        assert_eq!(scene.meshes[0].colours, opaque, "{names}");
+        assert!(scene.unsupported[0].what.starts_with("vertex colours: kept"), "{:?}", scene.unsupported);
+    }
+    let with_alpha = coloured(
+        &named("uchar", "red green blue alpha"),
+        ["255 0 51 7", "0 255 0 0", "1 2 3 255", "9 9 9 9"],
+    );
+    assert_eq!(with_alpha.meshes[0].colours[..2], [[255, 0, 51, 7], [0, 255, 0, 0]]);
+    // 0.2 is 51 of 255, 0.5 rounds up to 128; 257 of 65535 is 1 of 255.
+    let floats = coloured(
+        &named("float", "red green blue"),
+        ["1 0 0.2", "0 1 0", "0.0040 0.0078 0.0118", "0.5 0.5 0.5"],
+    );
+    assert_eq!(floats.meshes[0].colours, opaque);
+    let wide = coloured(
+        &named("ushort", "red green blue"),
+        ["65535 0 13107", "0 65535 0", "257 514 771", "32896 32896 32896"],
+    );
+    assert_eq!(wide.meshes[0].colours, opaque);
+    // Floats that are no shares, and types that no program means colours by: the shape is read all the same.
+    let bright = coloured(&named("float", "red green blue"), ["0 0 0", "255 0 0", "0 0 0", "0 0 0"]);
+    assert!(bright.meshes[0].colours.is_empty());
+    let what = &bright.unsupported[0].what;
+    assert_eq!(what, "vertex colours, as that of vertex 1 is out of range: left out");
+    let signed = coloured(&named("int", "red green blue"), bytes);
+    assert!(
+        signed.meshes[0].colours.is_empty() && signed.unsupported[0].what.ends_with("known type: left out")
+    );
 }
 
 #[test]

@@ -39,6 +39,16 @@ impl Scalar {
         })
     }
 
+    /// The value of a channel of a colour at full brightness; `None` for a type that colours do not have.
+    pub(super) fn full_brightness(self) -> Option<f64> {
+        Some(match self {
+            Self::U8 => f64::from(u8::MAX),
+            Self::U16 => f64::from(u16::MAX),
+            Self::F32 | Self::F64 => 1.0,
+            Self::I8 | Self::I16 | Self::I32 | Self::U32 => return None,
+        })
+    }
+
     fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
