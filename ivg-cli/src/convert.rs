@@ -29,18 +29,28 @@ pub(crate) fn indexed_mesh(mesh: &Mesh, materials: &[Material]) -> Result<Indexe
 
 /// All meshes of a scene, placed by its nodes, as one mesh in world space.
 ///
-/// Normals and texture coordinates are kept only if every mesh has them: a mesh has one set of attributes.
+/// Normals and texture coordinates are kept only if every mesh has them: a mesh has one set of attributes. What is left out
+/// for that is named, one sentence each, with what the file asks for and scenes do not have.
 ///
 /// # Errors
 ///
 /// Fails if the scene has no triangle, or a material index does not fit the format's 16 bits.
-pub(crate) fn joined_mesh(scene: &Scene) -> Result<IndexedMesh, Failure> {
+pub(crate) fn joined_mesh(scene: &Scene) -> Result<(IndexedMesh, Vec<String>), Failure> {
     let placed = || scene.nodes.iter().map(|node| &scene.meshes[node.mesh as usize]);
     if placed().all(|mesh| mesh.triangles.is_empty()) {
         return Err(Failure::new(format_args!("{}: the file has no triangle", scene.name)));
     }
     let with_normals = placed().all(|mesh| !mesh.normals.is_empty());
     let with_uvs = placed().all(|mesh| !mesh.uvs.is_empty());
+    let dropped = [
+        ("normals", with_normals, placed().any(|mesh| !mesh.normals.is_empty())),
+        ("texture coordinates", with_uvs, placed().any(|mesh| !mesh.uvs.is_empty())),
+    ]
+    .into_iter()
+    .filter(|&(_, all, any)| any && !all)
+    .map(|(what, ..)| format!("{}: {what}, as not every mesh of the file has them: left out", scene.name));
+    let left_out = scene.unsupported.iter().map(|item| format!("{}: {}", item.object, item.what));
+    let left_out = left_out.chain(dropped).collect();
     let flat = scene.flatten();
     let mut out = IndexedMesh::from_positions(
         flat.positions.iter().map(|p| p.to_array()).collect(),
@@ -55,7 +65,7 @@ pub(crate) fn joined_mesh(scene: &Scene) -> Result<IndexedMesh, Failure> {
     }
     out.wedges.colours = flat.colours;
     set_materials(&mut out, &flat.triangle_materials, &scene.materials, &scene.name)?;
-    Ok(out)
+    Ok((out, left_out))
 }
 
 fn set_materials(

@@ -63,7 +63,7 @@ fn the_parts_of_a_mesh_add_up_to_its_file() {
             assert_eq!((count("bytes"), sum), (bytes, bytes), "{report}");
             let bits = report["bits_per_vertex"].as_f64().expect("a number");
             assert!((bits - 8.0 * bytes as f64 / vertices as f64).abs() < 1e-9);
-            for stage in ["read", "clean", "order", "encode"] {
+            for stage in ["read", "clean", "order", "encode", "write"] {
                 assert!(report["seconds"][stage].is_f64(), "{stage}: {report}");
             }
             place.ok(&["check", &out]);
@@ -90,6 +90,21 @@ fn what_was_welded_and_dropped_is_told() {
     assert_eq!(found("duplicate faces dropped"), None, "{report}");
     let shown = text(&place.ok(&["mesh", "soup.obj", "-o", "soup.pmesh"]));
     assert!(shown.contains("1    vertices welded (equal positions)\n"), "{shown}");
+    // Normals that only one of two objects has, a line, and a material library that is not there.
+    let mixed =
+        "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nl 1 2\no a\nf 1//1 2//1 3//1\no b\nf 1 3 2\n";
+    place.write("mixed.obj", mixed.as_bytes());
+    let output = place.run(&["mesh", "mixed.obj", "-o", "mixed.pmesh", "--json"]);
+    let (report, said) = (json(&output.stdout), text(&output.stderr));
+    for (key, what) in [
+        ("warnings", "gone.mtl"),
+        ("left_out", "normals, as not every mesh of the file has them"),
+        ("left_out", "1 lines, points or curves"),
+    ] {
+        let list = report[key].as_array().expect("a list");
+        assert!(list.iter().any(|item| item.as_str().expect("text").contains(what)), "{what}: {report}");
+        assert!(said.contains(what), "{what}: {said}");
+    }
 }
 
 #[test]

@@ -28,6 +28,8 @@ pub enum Effect {
     Glass,
     /// Albedo that varies over a surface.
     Textures,
+    /// Colours of vertices, which would change the albedo from place to place.
+    VertexColours,
     /// Light from outside the scene.
     Sky,
 }
@@ -93,13 +95,14 @@ impl EffectPlan {
 
 impl Effect {
     /// All effects, in order.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::DirectLight,
         Self::Shadows,
         Self::DiffuseIndirect,
         Self::Mirrors,
         Self::Glass,
         Self::Textures,
+        Self::VertexColours,
         Self::Sky,
     ];
 
@@ -113,6 +116,7 @@ impl Effect {
             Self::Mirrors => "mirrors",
             Self::Glass => "glass",
             Self::Textures => "textures",
+            Self::VertexColours => "vertex colours",
             Self::Sky => "sky",
         }
     }

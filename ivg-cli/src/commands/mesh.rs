@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
     let mut watch = Watch::start();
     let scene = import::load(&arguments.mesh, &ImportOptions::default()).map_err(Failure::new)?;
     scene.check().map_err(Failure::new)?;
-    let mesh = convert::joined_mesh(&scene)?;
+    let (mesh, left_out) = convert::joined_mesh(&scene)?;
     watch.lap("read");
 
     let attributes = AttributeWeights {
@@ -49,11 +49,14 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
         .map_err(|error| Failure::file(&arguments.mesh, error))?;
     watch.lap("encode");
     files::write(&arguments.out, &file)?;
+    watch.lap("write");
 
     let written = Written {
         arguments,
         progressive: &progressive,
         report: &report,
+        warnings: &scene.warnings,
+        left_out: &left_out,
         options: &encode_options,
         header: reading::mesh_header(&arguments.out, &file)?,
         breakdown: breakdown::of(&file).map_err(|error| Failure::file(&arguments.out, error))?,
@@ -64,6 +67,9 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
         files::print(&format!("{}\n", written.json()))?;
     } else {
         files::print(&written.text())?;
+    }
+    for warning in scene.warnings.iter().chain(&left_out) {
+        eprintln!("ivg: warning: {}", files::shown(warning));
     }
     if report.precision_lost() {
         eprintln!(
@@ -99,6 +105,10 @@ struct Written<'a> {
     arguments: &'a MeshArguments,
     progressive: &'a ProgressiveMesh,
     report: &'a BuildReport,
+    /// What was assumed or repaired while reading.
+    warnings: &'a [String],
+    /// What of the file has no place in the mesh.
+    left_out: &'a [String],
     options: &'a EncodeOptions,
     header: Header,
     breakdown: Breakdown,
@@ -142,6 +152,8 @@ impl Written<'_> {
             "packets": header.packet_count(),
             "parts": named(&self.breakdown),
             "findings": named(&findings(self.report).collect::<Vec<_>>()),
+            "warnings": self.warnings,
+            "left_out": self.left_out,
             "seconds": named(&self.seconds),
         })
     }

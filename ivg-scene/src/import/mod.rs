@@ -54,9 +54,6 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// What is said of a file whose vertices have colours.
-const COLOURS_KEPT: &str = "vertex colours: kept, but light is computed with the materials' albedo";
-
 /// A channel of a colour in eight bits; `None` unless it lies in \[0, `full`\].
 fn channel(value: f64, full: f64) -> Option<u8> {
     (0.0..=full).contains(&value).then(|| (value / full * f64::from(u8::MAX)).round() as u8)

@@ -12,9 +12,9 @@ use std::collections::{BTreeMap, HashMap};
 
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
+use super::channel;
 use super::compress::MAX_FILE_BYTES;
 use super::folder::Folder;
-use super::{COLOURS_KEPT, channel};
 use crate::geometry::{repair_normals, snapped_origin};
 use crate::{Material, Mesh, Node, Scene, SceneError, Unsupported};
 use lines::CheckedLines;
@@ -57,13 +57,9 @@ pub(crate) fn read(name: &str, stem: &str, bytes: &[u8], folder: &Folder) -> Res
             what: "vertex colours, as some are not from 0 to 1: left out".into(),
         });
     }
-    if with_colours {
-        scene.unsupported.push(Unsupported { object: name.into(), what: COLOURS_KEPT.into() });
-        if reader.plain_vertices > 0 {
-            scene
-                .warnings
-                .push(format!("{name}: {} vertices without a colour are white", reader.plain_vertices));
-        }
+    if with_colours && reader.plain_vertices > 0 {
+        let plain = reader.plain_vertices;
+        scene.warnings.push(format!("{name}: {plain} vertices without a colour are white"));
     }
     add_materials(&mut scene, &materials, folder);
     let default_material = scene.materials.len() as u32;

@@ -7,7 +7,7 @@ mod values;
 
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
-use super::{COLOURS_KEPT, channel as channel_byte};
+use super::channel as channel_byte;
 use crate::geometry::{repair_normals, snapped_origin};
 use crate::{Material, Mesh, Node, Scene, SceneError, Unsupported};
 use header::{Element, Header, Kind, Property};
@@ -246,16 +246,13 @@ impl Gathered {
             triangles: self.triangles,
         };
         repair_normals(&mut mesh);
-        let colours = (!mesh.colours.is_empty()).then(|| COLOURS_KEPT.to_owned());
         let texture = header.texture.iter().map(|t| format!("image \"{t}\""));
-        let left_out = self.left_out.into_iter().chain(texture).map(|what| format!("{what}: left out"));
         Ok(Scene {
             nodes: vec![Node { name: stem.into(), mesh: 0, transform: DAffine3::IDENTITY }],
             meshes: vec![mesh],
             materials: vec![Material::default()],
-            unsupported: left_out
-                .chain(colours)
-                .map(|what| Unsupported { object: name.into(), what })
+            unsupported: (self.left_out.into_iter().chain(texture))
+                .map(|what| Unsupported { object: name.into(), what: format!("{what}: left out") })
                 .collect(),
             ..Scene::default()
         })

@@ -57,6 +57,7 @@ pub fn analyse(scene: &Scene, flat: &FlatScene, options: &PlanOptions) -> Effect
             decide(Effect::Mirrors, mirrors(scene, &areas)),
             decide(Effect::Glass, glass(scene, &areas)),
             decide(Effect::Textures, textures(scene, flat)),
+            decide(Effect::VertexColours, vertex_colours(scene)),
             decide(Effect::Sky, sky(scene)),
         ],
         max_bounces,
@@ -214,6 +215,15 @@ fn textures(scene: &Scene, flat: &FlatScene) -> (Need, String) {
         );
         (Need::Needed, why)
     }
+}
+
+fn vertex_colours(scene: &Scene) -> (Need, String) {
+    let coloured = scene.meshes.iter().filter(|mesh| !mesh.colours.is_empty());
+    let names: Vec<&str> = coloured.map(|mesh| mesh.name.as_str()).collect();
+    if names.is_empty() {
+        return (Need::NotNeeded, "no vertex has a colour".into());
+    }
+    (Need::Unsupported, format!("meshes {} have them; they reflect by their materials alone", quoted(&names)))
 }
 
 fn sky(scene: &Scene) -> (Need, String) {

@@ -151,6 +151,12 @@ fn what_cannot_be_done_is_unsupported_and_named() {
     assert_eq!(decided, Need::Unsupported);
     assert!(why.contains("\"pane\"") && why.contains("absorbed"), "{why}");
     assert!(!plan(&room).needs(Effect::Glass));
+    assert_eq!(need(&room, Effect::VertexColours).0, Need::NotNeeded);
+    room.meshes[1].colours = vec![[9; 4]; room.meshes[1].positions.len()];
+    room.meshes[1].name = "painted".into();
+    let (decided, why) = need(&room, Effect::VertexColours);
+    assert_eq!(decided, Need::Unsupported);
+    assert!(why.contains("\"painted\"") && why.contains("materials alone"), "{why}");
 }
 
 #[test]
