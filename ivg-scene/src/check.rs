@@ -48,6 +48,7 @@ impl Scene {
         share("albedo", m.albedo)
             .or_else(|| radiant("emission", m.emission))
             .or_else(|| share("share of mirror reflection", Vec3::splat(m.specular)))
+            .or_else(|| share("colour of mirror reflection", m.specular_colour))
             .or_else(|| share("roughness", Vec3::splat(m.roughness)))
             .or_else(|| share("share of transmission", Vec3::splat(m.transmission)))
             .or_else(|| share("colour of transmission", m.transmission_colour))

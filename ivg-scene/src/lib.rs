@@ -23,13 +23,15 @@ mod material;
 mod mesh;
 pub mod plan;
 mod scene;
+mod solid;
 
 pub use camera::Camera;
 pub use error::SceneError;
 #[cfg(feature = "fuzz")]
 pub use import::fuzz_scene_import;
 pub use light::{Light, LightKind, spot_factor};
-pub use material::{Material, Texture, TextureFormat};
+pub use material::{Lobes, Material, Texture, TextureFormat};
 pub use mesh::Mesh;
 pub use plan::{Cost, Effect, EffectPlan, Need, PlanOptions, PlannedEffect};
 pub use scene::{FlatScene, Node, Scene, Unsupported};
+pub use solid::Side;

@@ -3,6 +3,10 @@ use std::sync::LazyLock;
 
 use glam::{DVec3, Vec2, Vec3};
 
+pub use lobes::Lobes;
+
+mod lobes;
+
 /// How a surface reflects and emits. Colours are linear RGB.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
@@ -16,14 +20,21 @@ pub struct Material {
     pub emission: Vec3,
     /// Whether the back side reflects and emits as the front side does.
     pub two_sided: bool,
-    /// Share of mirror reflection in [0, 1]: metallic surfaces of low roughness, OBJ `Ks`/`illum 3`.
+    /// Share of mirror reflection in [0, 1]: of the metal (glTF), or of a layer that mirrors (OBJ `Ks`); see [`Lobes`].
     pub specular: f32,
+    /// Colour of the mirror reflection seen straight on, each channel in [0, 1]; of a metal, multiplied by the albedo
+    /// texture where there is one.
+    pub specular_colour: Vec3,
+    /// Whether the mirror reflection is that of a metal, which takes the place of the albedo; else it adds to it.
+    pub metallic: bool,
     /// Roughness of the mirror reflection in [0, 1]; 0 is a perfect mirror.
     pub roughness: f32,
     /// Share of transmitted light in [0, 1]: glass.
     pub transmission: f32,
-    /// Colour filter of transmitted light, each channel in [0, 1].
+    /// Colour filter of transmitted light, each channel in [0, 1], at each surface that it passes.
     pub transmission_colour: Vec3,
+    /// Whether light goes straight on behind the surface, as through a pane; else a closed mesh is a solid that bends it.
+    pub thin: bool,
     /// Index of refraction of the inside, >= 1.
     pub refractive_index: f32,
 }
@@ -38,9 +49,12 @@ impl Default for Material {
             emission: Vec3::ZERO,
             two_sided: true,
             specular: 0.0,
+            specular_colour: Vec3::ONE,
+            metallic: false,
             roughness: 1.0,
             transmission: 0.0,
             transmission_colour: Vec3::ONE,
+            thin: false,
             refractive_index: 1.5,
         }
     }

@@ -34,7 +34,7 @@ const NEAR_PLANE: f64 = 0.01;
 /// all the same.
 ///
 /// What glTF cannot say: where a material lets light through, its base colour is the colour of the transmission, and
-/// the diffuse albedo that is read back is that times the share not let through. Meshes without triangles are left out,
+/// the diffuse albedo that is read back is that times the share not let through; a layer that mirrors becomes metal. Meshes without triangles are left out,
 /// their nodes stay. A scene without nodes, lights and camera
 /// becomes a file without a glTF scene.
 ///
@@ -253,6 +253,10 @@ impl Writer {
         if m.transmission > 0.0 {
             extensions
                 .insert("KHR_materials_transmission".into(), json!({ "transmissionFactor": m.transmission }));
+        }
+        if m.transmission > 0.0 && !m.thin {
+            // Any thickness above 0 says that the mesh is the border of a solid.
+            extensions.insert("KHR_materials_volume".into(), json!({ "thicknessFactor": 1.0 }));
         }
         if m.refractive_index != Material::default().refractive_index {
             extensions.insert("KHR_materials_ior".into(), json!({ "ior": m.refractive_index }));

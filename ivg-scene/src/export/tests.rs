@@ -47,7 +47,24 @@ fn everything() -> Scene {
                 emission: Vec3::new(18.387, 13.9873, 0.1),
                 refractive_index: 1.75,
                 specular: 0.5,
+                specular_colour: paint.albedo,
+                metallic: true,
                 roughness: 0.25,
+                ..paint.clone()
+            },
+            Material {
+                name: "glass".into(),
+                albedo: Vec3::ZERO,
+                transmission: 1.0,
+                transmission_colour: Vec3::new(0.5, 0.75, 1.0),
+                ..paint.clone()
+            },
+            Material {
+                name: "pane".into(),
+                albedo: Vec3::splat(0.25),
+                transmission: 0.5,
+                transmission_colour: Vec3::splat(0.5),
+                thin: true,
                 ..paint
             },
         ],
@@ -182,7 +199,13 @@ fn what_is_written_follows_the_rules_of_gltf() {
         let factors = material["emissiveFactor"].as_array().into_iter().flatten();
         factors.for_each(|f| assert!((0.0..=1.0).contains(&f.as_f64().unwrap())));
     }
-    let used = json!(["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior"]);
+    let used = json!([
+        "KHR_lights_punctual",
+        "KHR_materials_emissive_strength",
+        "KHR_materials_ior",
+        "KHR_materials_transmission",
+        "KHR_materials_volume",
+    ]);
     assert_eq!(root["extensionsUsed"], used);
 }
 

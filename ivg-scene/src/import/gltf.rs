@@ -18,12 +18,13 @@ use crate::{Camera, Light, LightKind, Node, Scene, SceneError, Unsupported};
 use accessor::Data;
 
 /// Extensions that a file may require.
-const SUPPORTED: [&str; 8] = [
+const SUPPORTED: [&str; 9] = [
     "EXT_meshopt_compression",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_transmission",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_meshopt_compression",
     "KHR_texture_transform",

@@ -34,8 +34,9 @@ impl Default for Coordinates {
 /// Adds all materials and the images of their base colours to the scene; returns for each material how its texture
 /// coordinates are made.
 ///
-/// The base colour is the diffuse albedo, also that of metals, since mirror reflection is not simulated; the share of
-/// transmission is taken off it. Metallic and roughness become share and roughness of the mirror reflection.
+/// The base colour is the albedo, also that of metals, for all that draw without mirrors; the share of transmission is taken
+/// off it. Metallic and roughness become share and roughness of the mirror reflection. What lets light through is thin, as
+/// `KHR_materials_transmission` says, unless `KHR_materials_volume` gives it a thickness.
 pub(super) fn read(
     data: &Data<'_>,
     folder: &Folder,
@@ -71,6 +72,17 @@ pub(super) fn read(
         {
             report("transmission image: only the factor counts");
         }
+        let volume = extensions.and_then(|e| e.volume.as_ref());
+        if transmission > 0.0 {
+            if volume.is_some_and(|v| v.attenuation_distance.0 < f32::MAX) {
+                report("colour of the volume: the glass has the base colour alone");
+            }
+            if pbr.base_color_texture.is_some() {
+                report(
+                    "base colour image of a material that lets light through: what passes has the factor alone",
+                );
+            }
+        }
         if let Some(info) = &source.emissive_texture
             && emission != Vec3::ZERO
         {
@@ -87,6 +99,7 @@ pub(super) fn read(
             report_wrapping(data.root, info, &object, scene);
         }
         coordinates.push(place);
+        let metallic = pbr.metallic_factor.0 > 0.0;
         scene.materials.push(Material {
             name,
             albedo: base * (1.0 - transmission),
@@ -94,9 +107,12 @@ pub(super) fn read(
             emission,
             two_sided: source.double_sided,
             specular: pbr.metallic_factor.0,
+            specular_colour: if metallic { base } else { Vec3::ONE },
+            metallic,
             roughness: pbr.roughness_factor.0,
             transmission,
             transmission_colour: if transmission > 0.0 { base } else { Vec3::ONE },
+            thin: transmission > 0.0 && volume.is_none_or(|v| v.thickness_factor.0 <= 0.0),
             refractive_index: extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0),
         });
     }

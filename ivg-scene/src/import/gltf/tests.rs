@@ -155,6 +155,7 @@ fn materials_mean_what_the_documentation_says() {
     assert_eq!((m.albedo, m.transmission_colour), (Vec3::new(0.4, 0.2, 0.1), Vec3::new(0.8, 0.4, 0.2)));
     assert_eq!((m.emission, m.two_sided), (Vec3::new(4.0, 2.0, 0.0), true));
     assert_eq!((m.specular, m.roughness, m.transmission, m.refractive_index), (0.75, 0.125, 0.5, 1.25));
+    assert_eq!((m.specular_colour, m.metallic, m.thin), (m.transmission_colour, true, true));
     let reported: Vec<&str> = scene.unsupported.iter().map(|u| u.what.as_str()).collect();
     assert_eq!(reported, ["glTF extension KHR_materials_clearcoat: ignored", "alpha: treated as opaque"]);
 }

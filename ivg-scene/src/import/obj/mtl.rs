@@ -90,7 +90,8 @@ fn number(keyword: &str, word: &str) -> Result<f64, String> {
 /// `Kd` is the diffuse albedo in linear RGB, `Ke` the emitted radiance \[W/(m² sr)\] of the front side, the one from
 /// which the corners run counter-clockwise. Surfaces reflect on both sides, as OBJ knows no other; those that emit do
 /// so on the front side alone. Light passes through by the share 1 - `d`, all of it for `illum` 6 and 7; `illum` 4 and
-/// 9 count only where `d` or `Tf` says so too, since some exporters write them for opaque materials.
+/// 9 count only where `d` or `Tf` says so too, since some exporters write them for opaque materials. `Ks` is the colour of
+/// a mirror reflection unless `illum` is 0, 1 or 2, which know only the highlights of lights.
 pub(super) fn convert(source: &tobj::Material) -> Material {
     let colour = |c: Option<[f64; 3]>| c.map(|c| Vec3::new(c[0] as f32, c[1] as f32, c[2] as f32));
     let parameter = |name: &str| source.unknown_param.get(name);
@@ -108,10 +109,11 @@ pub(super) fn convert(source: &tobj::Material) -> Material {
         Some(4 | 9) if opacity == 1.0 && filter.is_some_and(|f| f != Vec3::ONE) => 1.0,
         _ => 1.0 - opacity,
     };
-    let specular = match model {
-        Some(0 | 1) => 0.0,
-        _ => colour(source.specular).unwrap_or(Vec3::ZERO).max_element(),
+    let mirrored = match model {
+        Some(0..=2) => Vec3::ZERO,
+        _ => colour(source.specular).unwrap_or(Vec3::ZERO),
     };
+    let specular = mirrored.max_element();
     let emission = colour(source.emissive).unwrap_or(Vec3::ZERO);
     Material {
         name: source.name.clone(),
@@ -120,9 +122,12 @@ pub(super) fn convert(source: &tobj::Material) -> Material {
         emission,
         two_sided: emission == Vec3::ZERO,
         specular,
+        specular_colour: if specular > 0.0 { mirrored / specular } else { Vec3::ONE },
+        metallic: false,
         roughness: roughness(source.shininess.unwrap_or(0.0)),
         transmission,
         transmission_colour: filter.unwrap_or(Vec3::ONE),
+        thin: false,
         refractive_index: source.optical_density.map_or(Material::default().refractive_index, |n| n as f32),
     }
 }

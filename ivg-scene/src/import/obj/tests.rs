@@ -59,6 +59,7 @@ fn materials_mean_what_the_documentation_says() {
         newmtl mirror\nKd 0.1 0.1 0.1\nKs 0.2 0.8 0.2\nNs 198\nillum 3\n\
         newmtl glass\nKd 0.4 0.4 0.4\nTf 0.9 0.2 0.1\nNi 1.33\nillum 7\n\
         newmtl veil\nKd 0.8 0.8 0.8\nd -halo 0.25\n\
+        newmtl highlight\nKd 0.5\nKs 0.5\nillum 2\n\
         newmtl opaque\nKd 0.8 0.8 0.8\nTf 1 1 1\nillum 4\n";
     let text = format!("mtllib m.mtl\n{CORNERS}usemtl lamp\nf 1 2 3\nusemtl wall\nf 1 3 4\n");
     let scene = read_with(&[("m.mtl", library.as_bytes())], &text).unwrap();
@@ -70,7 +71,9 @@ fn materials_mean_what_the_documentation_says() {
     assert_eq!((lamp.emission, lamp.two_sided), (Vec3::new(18.0, 14.0, 7.0), false));
     let mirror = by_name("mirror");
     // sqrt(sqrt(2 / 200))
-    assert_eq!(mirror.specular, 0.8);
+    assert_eq!((mirror.specular, mirror.metallic), (0.8, false));
+    assert_eq!(mirror.specular_colour, Vec3::new(0.25, 1.0, 0.25));
+    assert_eq!(by_name("highlight").specular, 0.0);
     assert!((mirror.roughness - 0.316_227_77).abs() < 1e-6);
     let glass = by_name("glass");
     assert_eq!((glass.transmission, glass.albedo, glass.refractive_index), (1.0, Vec3::ZERO, 1.33));
