@@ -52,6 +52,12 @@ pub enum RenderError {
         /// How many there are.
         count: usize,
     },
+    /// A progressive mesh that is on the device does not fit what it is given or drawn with.
+    #[error("a progressive mesh {problem}")]
+    Progressive {
+        /// What is wrong.
+        problem: &'static str,
+    },
     /// A material names a texture that does not exist, or a texture has not the texels its size says.
     #[error("material or texture {name:?}: {problem}")]
     Texture {

@@ -17,7 +17,8 @@ pub struct Geometry {
     pub triangles: Vec<[u32; 3]>,
     /// Triangles of one material each, together all triangles.
     pub draws: Vec<Draw>,
-    /// Smallest and largest coordinates of all vertices of triangles \[m\]; both zero without a triangle.
+    /// Smallest and largest coordinates of all vertices of triangles and of progressive meshes that are drawn with them
+    /// \[m\]; both zero without any.
     pub bounds: (Vec3, Vec3),
 }
 
@@ -63,6 +64,14 @@ impl Geometry {
         geometry.order_by_material(&materials);
         geometry.bounds = geometry.find_bounds();
         Ok(geometry)
+    }
+
+    /// The same with bounds that these boxes lie in too.
+    pub(crate) fn containing(mut self, boxes: &[(Vec3, Vec3)]) -> Self {
+        let own = (!self.triangles.is_empty()).then_some(self.bounds);
+        let all = own.into_iter().chain(boxes.iter().copied());
+        self.bounds = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or(self.bounds);
+        self
     }
 
     /// Diagonal of the bounds \[m\].

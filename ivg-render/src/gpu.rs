@@ -5,11 +5,13 @@
 
 mod device;
 mod execute;
+mod mesh;
 mod pipelines;
 mod resources;
 
 use crate::plan::FramePlan;
 use crate::{Image, RenderError, RenderOptions, RenderScene};
+pub use mesh::GpuMesh;
 use pipelines::Pipelines;
 #[cfg(test)]
 pub(crate) use pipelines::{SHADE_SHADER, SHADOW_SHADER};
@@ -85,12 +87,36 @@ impl GpuRenderer {
         self.execute(&FramePlan::new(scene, options)?)
     }
 
+    /// Renders a scene with progressive meshes that are on the device beside its own.
+    ///
+    /// # Errors
+    ///
+    /// As [`GpuRenderer::render`]; [`RenderError::Progressive`] if a mesh names materials that the scene does not have, was
+    /// placed for another origin, or emits light.
+    pub fn render_with(
+        &self,
+        scene: &RenderScene,
+        options: &RenderOptions,
+        meshes: &[&GpuMesh],
+    ) -> Result<Image, GpuError> {
+        let emissive: Vec<bool> = scene.materials.iter().map(|m| m.emission != glam::Vec3::ZERO).collect();
+        let meshes: Vec<&GpuMesh> = meshes.iter().copied().filter(|mesh| mesh.level() > 0).collect();
+        meshes.iter().try_for_each(|mesh| mesh.check(scene.origin, &emissive))?;
+        let boxes: Vec<_> = meshes.iter().map(|mesh| mesh.bounds()).collect();
+        let plan = FramePlan::around(scene, options, &boxes)?;
+        device::checked(&self.device, || {
+            execute::frame(&self.device, &self.queue, &self.pipelines, &plan, &meshes)
+        })
+    }
+
     /// Carries out a plan.
     ///
     /// # Errors
     ///
     /// [`GpuError::Limit`] or [`GpuError::Device`].
     pub fn execute(&self, plan: &FramePlan<'_>) -> Result<Image, GpuError> {
-        device::checked(&self.device, || execute::frame(&self.device, &self.queue, &self.pipelines, plan))
+        device::checked(&self.device, || {
+            execute::frame(&self.device, &self.queue, &self.pipelines, plan, &[])
+        })
     }
 }

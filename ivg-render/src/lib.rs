@@ -43,7 +43,7 @@ pub use cpu::{execute as execute_cpu, render_cpu};
 pub use error::{MAX_SIDE, RenderError};
 pub use geometry::{Draw, Geometry};
 #[cfg(feature = "gpu")]
-pub use gpu::{GpuError, GpuRenderer, INSTALL_SOFTWARE_ADAPTER};
+pub use gpu::{GpuError, GpuMesh, GpuRenderer, INSTALL_SOFTWARE_ADAPTER};
 pub use image::{DisplayImage, Image};
 pub use options::RenderOptions;
 pub use scene::{RenderMesh, RenderScene};

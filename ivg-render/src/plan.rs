@@ -81,9 +81,19 @@ impl<'scene> FramePlan<'scene> {
     ///
     /// [`RenderError`]: the first problem of scene, camera or options.
     pub fn new(scene: &'scene RenderScene, options: &RenderOptions) -> Result<Self, RenderError> {
+        Self::around(scene, options, &[])
+    }
+
+    /// As [`FramePlan::new`], for a frame that also shows what lies in these boxes of scene space \[m\], each the least and
+    /// the greatest corner.
+    pub(crate) fn around(
+        scene: &'scene RenderScene,
+        options: &RenderOptions,
+        boxes: &[(Vec3, Vec3)],
+    ) -> Result<Self, RenderError> {
         options.check()?;
         scene.check()?;
-        let geometry = Geometry::new(scene)?;
+        let geometry = Geometry::new(scene)?.containing(boxes);
         let lights = if options.direct {
             let (materials, origin) = (&scene.materials, scene.origin);
             light_records(&geometry, materials, &scene.lights, origin, options.area_samples, options.shadows)

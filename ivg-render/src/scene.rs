@@ -129,10 +129,6 @@ impl RenderMesh {
     /// If a triangle names a wedge, or a wedge a vertex, that does not exist.
     #[must_use]
     pub fn from_indexed(mesh: &IndexedMesh, materials: &[u32], transform: &DAffine3, origin: DVec3) -> Self {
-        let place = DAffine3 {
-            matrix3: transform.matrix3,
-            translation: transform.transform_point3(DVec3::from(mesh.origin)) - origin,
-        };
         let wedges = &mesh.wedges;
         let material = |index: u16| materials.get(usize::from(index)).copied().unwrap_or(u32::MAX);
         let normals = if wedges.normals.is_empty() {
@@ -152,10 +148,7 @@ impl RenderMesh {
                 .map(|triangle| material(mesh.materials.get(triangle).copied().unwrap_or(0)))
                 .collect(),
             triangles: mesh.triangles.clone(),
-            transform: Affine3A {
-                matrix3: place.matrix3.as_mat3().into(),
-                translation: place.translation.as_vec3a(),
-            },
+            transform: placed(transform, DVec3::from(mesh.origin), origin),
         }
     }
 
@@ -197,15 +190,25 @@ impl RenderMesh {
 
     /// What maps normals of the mesh's space to scene space (not unit length).
     pub(crate) fn normal_matrix(&self) -> Mat3A {
-        // The cofactor matrix: the inverse transpose up to a factor, defined for flat transforms too.
-        let [x, y, z] =
-            [self.transform.matrix3.x_axis, self.transform.matrix3.y_axis, self.transform.matrix3.z_axis];
-        Mat3A::from_cols(y.cross(z), z.cross(x), x.cross(y))
+        normal_matrix(&self.transform)
     }
 }
 
+/// From the space of positions that are relative to `mesh_origin` to scene space, whose origin is at `origin`.
+pub(crate) fn placed(transform: &DAffine3, mesh_origin: DVec3, origin: DVec3) -> Affine3A {
+    let translation = transform.transform_point3(mesh_origin) - origin;
+    Affine3A { matrix3: transform.matrix3.as_mat3().into(), translation: translation.as_vec3a() }
+}
+
+/// What takes normals along with a transform (not unit length).
+pub(crate) fn normal_matrix(transform: &Affine3A) -> Mat3A {
+    // The cofactor matrix: the inverse transpose up to a factor, defined for flat transforms too.
+    let [x, y, z] = [transform.matrix3.x_axis, transform.matrix3.y_axis, transform.matrix3.z_axis];
+    Mat3A::from_cols(y.cross(z), z.cross(x), x.cross(y))
+}
+
 /// Unit normals of vertices: the mean of the triangles around each, weighted by area; zero where there is none.
-fn area_weighted_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+pub(crate) fn area_weighted_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; positions.len()];
     for corners in triangles {
         let [a, b, c] = corners.map(|corner| positions[corner as usize]);

@@ -25,11 +25,15 @@
 
 #![cfg(feature = "gpu")]
 
+use glam::{DAffine3, DQuat, DVec3};
 use ivg_format::Quantity;
 use ivg_grid::{Reconstruction, SpatialFilter};
 use ivg_render::{
-    GpuError, GpuRenderer, Image, RenderError, RenderOptions, RenderScene, compare, render_cpu,
+    GpuError, GpuMesh, GpuRenderer, Image, RenderError, RenderMesh, RenderOptions, RenderScene, compare,
+    render_cpu,
 };
+use pmesh_format::{LevelChange, Replay};
+use scenes::progressive::{Sheet, sheet};
 
 #[allow(dead_code, reason = "shared with the CPU tests and the example, which use other parts")]
 mod scenes;
@@ -175,6 +179,128 @@ fn everything_together_with_supersampling() {
     let mut options = options();
     (options.width, options.height, options.supersampling) = (80, 60, 2);
     check(&scenes::cornell(true), &options);
+}
+
+/// Where the sheet stands in the box; with a mirror image among its transforms.
+fn stand(mirrored: bool) -> DAffine3 {
+    let scale = DVec3::new(if mirrored { -0.6 } else { 0.6 }, 0.6, 0.6);
+    let corner = DVec3::new(if mirrored { 0.8 } else { 0.2 }, 0.2, 0.45);
+    DAffine3::from_scale_rotation_translation(scale, DQuat::from_rotation_x(-0.3), corner)
+}
+
+/// The room of [`scenes::cornell`] without what stands in it, and a texture for the sheet.
+fn room() -> RenderScene {
+    let mut scene = scenes::cornell(true);
+    scene.meshes.truncate(scenes::ROOM_MESHES);
+    scene.textures = scenes::lamps().textures;
+    scene.materials[4].albedo_texture = Some(0);
+    scene
+}
+
+/// The scene's materials for those of the sheet: textured, then green.
+const SHEET_MATERIALS: [u32; 2] = [4, 2];
+
+/// A mesh on the device at the level of `replay`, uploaded at once.
+fn fresh(renderer: &GpuRenderer, replay: &Replay, transform: &DAffine3) -> GpuMesh {
+    let mut mesh = GpuMesh::new(renderer, replay.header(), &SHEET_MATERIALS, transform, DVec3::ZERO).unwrap();
+    mesh.upload(renderer, replay, &LevelChange::default()).unwrap();
+    mesh
+}
+
+#[test]
+fn a_progressive_mesh_that_was_stepped_looks_as_one_uploaded_at_once_and_as_on_the_cpu() {
+    let (renderer, room, options) = (renderer(), room(), options());
+    for (kind, mirrored) in [(Sheet::Plain, false), (Sheet::Full, true)] {
+        let (mut replay, transform) = (sheet(kind), stand(mirrored));
+        replay.set_level(4).unwrap();
+        let mut kept = fresh(&renderer, &replay, &transform);
+        let mut pictures: Vec<Image> = Vec::new();
+        for level in [60, 700, 1089, 60] {
+            let change = replay.set_level(level).unwrap();
+            kept.upload(&renderer, &replay, &change).unwrap();
+            let picture = renderer.render_with(&room, &options, &[&kept]).unwrap();
+            let at_once = fresh(&renderer, &replay, &transform);
+            assert_eq!(
+                picture,
+                renderer.render_with(&room, &options, &[&at_once]).unwrap(),
+                "{kind:?} {level}"
+            );
+            pictures.push(picture);
+            let mut on_cpu = room.clone();
+            on_cpu.meshes.push(RenderMesh::from_indexed(
+                &replay.mesh(),
+                &SHEET_MATERIALS,
+                &transform,
+                DVec3::ZERO,
+            ));
+            let cpu = render_cpu(&on_cpu, &options).unwrap();
+            if let Err(reason) = agree(&cpu, pictures.last().unwrap()) {
+                panic!("{kind:?}, level {level}: {reason}");
+            }
+        }
+        assert_eq!(pictures[0], pictures[3], "the same level after others");
+        // The comparison tells levels apart, and a room without the sheet from one with it.
+        assert!(agree(&pictures[0], &pictures[2]).is_err(), "{kind:?}: 60 vertices look like 1,089");
+        assert!(agree(&pictures[2], &renderer.render(&room, &options).unwrap()).is_err());
+    }
+}
+
+#[test]
+fn a_step_uploads_what_it_changes() {
+    let renderer = renderer();
+    for kind in [Sheet::Plain, Sheet::Full] {
+        let mut replay = sheet(kind);
+        let mut mesh = fresh(&renderer, &replay, &stand(false));
+        let whole = mesh.uploaded_bytes();
+        // A wedge has a position and perhaps a normal and texture coordinates, a face three corners and perhaps a material.
+        let (a_wedge, a_face) = if kind == Sheet::Full { (32, 16) } else { (24, 12) };
+        assert_eq!(whole, u64::from(a_wedge * replay.wedge_count() + a_face * replay.face_count()));
+        for level in [1085, 1089, 1080, 1081] {
+            let change = replay.set_level(level).unwrap();
+            let bytes = mesh.upload(&renderer, &replay, &change).unwrap();
+            // All vertices are there. Corners: the ranges, and the gaps between them that are no longer than 16 faces. Normals
+            // of the sheet that has none: those of corners of changed faces, which have 3 each before and after.
+            let faces: u32 = change.changed.iter().map(|range| range.end - range.start).sum();
+            let gone = if change.to < change.from { 2 * (change.from - change.to) } else { 0 };
+            let gaps = 16 * change.changed.len() as u32;
+            let normals = if kind == Sheet::Plain { 12 * (6 * (faces + gone) * 17) } else { 0 };
+            assert!(
+                bytes <= u64::from(12 * (faces + gaps) + normals),
+                "{kind:?}, level {level}: {bytes} bytes"
+            );
+            assert!(bytes > 0 && 8 * bytes < whole, "{kind:?}, level {level}: {bytes} of {whole} bytes");
+        }
+        let before = mesh.uploaded_bytes();
+        let change = replay.set_level(1081).unwrap();
+        assert_eq!(mesh.upload(&renderer, &replay, &change).unwrap(), 0, "the same level");
+        assert_eq!(mesh.uploaded_bytes(), before);
+    }
+}
+
+#[test]
+fn progressive_meshes_that_do_not_fit_the_scene_are_errors() {
+    let (renderer, room, options) = (renderer(), room(), options());
+    let replay = sheet(Sheet::Full);
+    let problem = |scene: &RenderScene, mesh: &GpuMesh| {
+        let error = renderer.render_with(scene, &options, &[mesh]).unwrap_err();
+        assert!(matches!(error, GpuError::Render(RenderError::Progressive { .. })), "{error}");
+        error.to_string()
+    };
+    let place = |materials: &[u32]| {
+        let mut mesh =
+            GpuMesh::new(&renderer, replay.header(), materials, &DAffine3::IDENTITY, DVec3::ZERO).unwrap();
+        mesh.upload(&renderer, &replay, &LevelChange::default()).unwrap();
+        mesh
+    };
+    assert!(problem(&room, &place(&[0, 5])).contains("a material that the scene does not have"));
+    assert!(problem(&room, &place(&[0, 3])).contains("emits light"));
+    let mut moved = room.clone();
+    moved.origin = DVec3::X;
+    assert!(problem(&moved, &place(&[0, 1])).contains("another origin"));
+    // One that nothing was uploaded of is not there.
+    let empty = GpuMesh::new(&renderer, replay.header(), &[9, 9], &DAffine3::IDENTITY, DVec3::X).unwrap();
+    let without = renderer.render(&room, &options).unwrap();
+    assert_eq!(renderer.render_with(&room, &options, &[&empty]).unwrap(), without);
 }
 
 #[test]

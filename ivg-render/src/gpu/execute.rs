@@ -1,6 +1,7 @@
 use glam::Vec3;
 use wgpu::{CommandEncoder, LoadOp, Operations, StoreOp, TextureView};
 
+use crate::gpu::mesh::GpuMesh;
 use crate::gpu::pipelines::Pipelines;
 use crate::gpu::resources::Resources;
 use crate::plan::{FramePlan, Pass};
@@ -10,17 +11,19 @@ use crate::{GpuError, Image};
 /// Bytes of a sample of the picture: four f32.
 const SAMPLE_BYTES: u32 = 16;
 
-/// Carries out a plan and waits for the picture.
+/// Carries out a plan, with progressive meshes beside its geometry, and waits for the picture.
 pub(super) fn frame(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     pipelines: &Pipelines,
     plan: &FramePlan<'_>,
+    meshes: &[&GpuMesh],
 ) -> Result<Image, GpuError> {
     let resources = Resources::new(device, queue, pipelines, plan)?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let scene = Recorded { device, pipelines, plan, resources: &resources, meshes };
     for pass in plan.passes() {
-        record(&mut encoder, pipelines, plan, &resources, pass);
+        scene.record(&mut encoder, pass);
     }
     let (width, height) = plan.sample_size();
     let bytes_per_row = row_bytes(width);
@@ -67,58 +70,77 @@ pub(super) fn row_bytes(width: u32) -> u32 {
     (width * SAMPLE_BYTES).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
-fn record(
-    encoder: &mut CommandEncoder,
-    pipelines: &Pipelines,
-    plan: &FramePlan<'_>,
-    resources: &Resources,
-    pass: Pass,
-) {
-    let index_count = 3 * plan.geometry.triangles.len() as u32;
-    match pass {
-        Pass::ShadowFirst { layer } => {
-            let mut pass = depth_pass(encoder, "first surface", &resources.first_depth);
-            pass.set_pipeline(&pipelines.shadow_first);
-            pass.set_bind_group(0, &resources.faces, &[layer * UNIFORM_ALIGNMENT as u32]);
-            pass.set_vertex_buffer(0, resources.positions.slice(..));
-            pass.set_index_buffer(resources.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..index_count, 0, 0..1);
-        }
-        Pass::ShadowLimit { layer } => {
-            let mut pass = depth_pass(encoder, "limit", &resources.shadow_layers[layer as usize]);
-            pass.set_bind_group(0, &resources.faces, &[layer * UNIFORM_ALIGNMENT as u32]);
-            pass.set_bind_group(1, &resources.first, &[]);
-            pass.set_pipeline(&pipelines.shadow_limit_first);
-            pass.draw(0..3, 0..1);
-            pass.set_pipeline(&pipelines.shadow_limit_second);
-            pass.set_vertex_buffer(0, resources.positions.slice(..));
-            pass.set_index_buffer(resources.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..index_count, 0, 0..1);
-        }
-        Pass::Shade => {
-            let view = resources.colour.create_view(&wgpu::TextureViewDescriptor::default());
-            let [r, g, b] = plan.background.to_array().map(f64::from);
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("shade"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: Operations {
-                        load: LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
-                        store: StoreOp::Store,
-                    },
-                })],
-                depth_stencil_attachment: Some(cleared(&resources.depth)),
-                ..wgpu::RenderPassDescriptor::default()
-            });
-            pass.set_pipeline(&pipelines.shade);
-            pass.set_bind_group(0, &resources.frame, &[]);
-            pass.set_vertex_buffer(0, resources.corners.slice(..));
-            for draw in &plan.geometry.draws {
-                pass.set_bind_group(1, &resources.materials[draw.material as usize], &[]);
-                pass.draw(3 * draw.triangles.start..3 * draw.triangles.end, 0..1);
+/// What passes are recorded from.
+struct Recorded<'a> {
+    device: &'a wgpu::Device,
+    pipelines: &'a Pipelines,
+    plan: &'a FramePlan<'a>,
+    resources: &'a Resources,
+    meshes: &'a [&'a GpuMesh],
+}
+
+impl Recorded<'_> {
+    fn record(&self, encoder: &mut CommandEncoder, pass: Pass) {
+        let Self { pipelines, resources, .. } = *self;
+        match pass {
+            Pass::ShadowFirst { layer } => {
+                let mut pass = depth_pass(encoder, "first surface", &resources.first_depth);
+                pass.set_pipeline(&pipelines.shadow_first);
+                pass.set_bind_group(0, &resources.faces, &[layer * UNIFORM_ALIGNMENT as u32]);
+                self.draw_depth(&mut pass);
             }
+            Pass::ShadowLimit { layer } => {
+                let mut pass = depth_pass(encoder, "limit", &resources.shadow_layers[layer as usize]);
+                pass.set_bind_group(0, &resources.faces, &[layer * UNIFORM_ALIGNMENT as u32]);
+                pass.set_bind_group(1, &resources.first, &[]);
+                pass.set_pipeline(&pipelines.shadow_limit_first);
+                pass.draw(0..3, 0..1);
+                pass.set_pipeline(&pipelines.shadow_limit_second);
+                self.draw_depth(&mut pass);
+            }
+            Pass::Shade => self.record_shade(encoder),
+        }
+    }
+
+    /// Every surface, for a shadow map.
+    fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.resources.positions.slice(..));
+        pass.set_index_buffer(self.resources.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..3 * self.plan.geometry.triangles.len() as u32, 0, 0..1);
+        self.meshes.iter().for_each(|mesh| mesh.draw_depth(pass));
+    }
+
+    fn record_shade(&self, encoder: &mut CommandEncoder) {
+        let Self { device, pipelines, plan, resources, meshes } = *self;
+        let view = resources.colour.create_view(&wgpu::TextureViewDescriptor::default());
+        let [r, g, b] = plan.background.to_array().map(f64::from);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shade"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: Operations {
+                    load: LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                    store: StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(cleared(&resources.depth)),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_pipeline(&pipelines.shade);
+        pass.set_bind_group(0, &resources.frame, &[]);
+        pass.set_vertex_buffer(0, resources.corners.slice(..));
+        for draw in &plan.geometry.draws {
+            pass.set_bind_group(1, &resources.materials[draw.material as usize], &[]);
+            pass.draw(3 * draw.triangles.start..3 * draw.triangles.end, 0..1);
+        }
+        if !meshes.is_empty() {
+            pass.set_pipeline(&pipelines.shade_mesh);
+            pass.set_bind_group(0, &resources.frame, &[]);
+            meshes
+                .iter()
+                .for_each(|mesh| mesh.draw_shaded(device, pipelines, &mut pass, &resources.materials));
         }
     }
 }

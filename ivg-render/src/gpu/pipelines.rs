@@ -22,6 +22,7 @@ pub(crate) const SHADOW_SHADER: &str =
 pub(crate) const SHADE_SHADER: &str = concat!(
     include_str!("../shaders/shared.wgsl"),
     include_str!("../shaders/shade.wgsl"),
+    include_str!("../shaders/mesh.wgsl"),
     include_str!("../shaders/direct.wgsl"),
     include_str!("../shaders/irradiance.wgsl"),
 );
@@ -37,6 +38,8 @@ pub(super) struct Pipelines {
     pub(super) frame_layout: BindGroupLayout,
     /// Group 1 of the shading pass: material and its texture.
     pub(super) material_layout: BindGroupLayout,
+    /// Group 2 of the shading pass of progressive meshes: positions, normals, texture coordinates, corners, materials.
+    pub(super) mesh_layout: BindGroupLayout,
     /// Depth of the first surface.
     pub(super) shadow_first: wgpu::RenderPipeline,
     /// The limit where there is no second surface, for every texel.
@@ -45,6 +48,8 @@ pub(super) struct Pipelines {
     pub(super) shadow_limit_second: wgpu::RenderPipeline,
     /// Shading.
     pub(super) shade: wgpu::RenderPipeline,
+    /// Shading of progressive meshes.
+    pub(super) shade_mesh: wgpu::RenderPipeline,
 }
 
 impl Pipelines {
@@ -54,7 +59,7 @@ impl Pipelines {
             device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
         };
         let shadow = module("shadow", SHADOW_SHADER);
-        let shade = module("shade", SHADE_SHADER);
+        let shade_module = module("shade", SHADE_SHADER);
         let group = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
@@ -87,6 +92,8 @@ impl Pipelines {
                 entry(1, fragment, texture(filterable, TextureViewDimension::D2)),
             ],
         );
+        let array = |binding| entry(binding, ShaderStages::VERTEX, storage(size_of::<f32>()));
+        let mesh_layout = group("mesh", &[0, 1, 2, 3, 4].map(array));
         let pipeline = |recipe: Recipe<'_>| recipe.build(device);
         let positions = wgpu::VertexBufferLayout {
             array_stride: size_of::<[f32; 3]>() as u64,
@@ -136,10 +143,20 @@ impl Pipelines {
         });
         let shade = pipeline(Recipe {
             label: "shade",
-            module: &shade,
+            module: &shade_module,
             groups: &[Some(&frame_layout), Some(&material_layout)],
             vertex: "vertex_shade",
             buffer: Some(corners),
+            fragment: Some("fragment_shade"),
+            colour: Some(COLOUR_FORMAT),
+            compare: wgpu::CompareFunction::Greater,
+        });
+        let shade_mesh = pipeline(Recipe {
+            label: "shade progressive meshes",
+            module: &shade_module,
+            groups: &[Some(&frame_layout), Some(&material_layout), Some(&mesh_layout)],
+            vertex: "vertex_mesh",
+            buffer: None,
             fragment: Some("fragment_shade"),
             colour: Some(COLOUR_FORMAT),
             compare: wgpu::CompareFunction::Greater,
@@ -149,10 +166,12 @@ impl Pipelines {
             first_layout,
             frame_layout,
             material_layout,
+            mesh_layout,
             shadow_first,
             shadow_limit_first,
             shadow_limit_second,
             shade,
+            shade_mesh,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Small scenes made by code, for the tests and the example.
 
+pub(crate) mod progressive;
+
 use glam::{Affine3A, DVec3, Vec2, Vec3};
 use ivg_format::{Lattice, Quantity};
 use ivg_grid::{FillOptions, IrradianceGrid, fill, integrate};
