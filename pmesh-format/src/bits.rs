@@ -1,90 +1,89 @@
-//! A sequence of bits, as switch codes are stored.
+//! Packed numbers, as raw packets store them (PMESH-PKT-02): one after the other, least significant bit first.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::arithmetic_side_effects))]
 
 use alloc::vec::Vec;
 
-use crate::room::reserve;
+/// Bits of a number below `count`: ⌈log₂ count⌉.
+#[inline(always)]
+pub(crate) const fn width(count: u32) -> u32 {
+    u32::BITS.saturating_sub(count.saturating_sub(1).leading_zeros())
+}
 
-/// A sequence of bits, the first in bit 0 of byte 0.
+/// Bytes of that many bits.
+pub(crate) fn bytes_of(bits: u64) -> usize {
+    usize::try_from(bits.div_ceil(8)).unwrap_or(usize::MAX)
+}
+
+/// The eight bytes from byte `at` on; 0 for those that are not there.
+#[inline(always)]
+pub(crate) fn word(bytes: &[u8], at: usize) -> u64 {
+    match bytes.get(at..).and_then(|rest| rest.first_chunk()) {
+        Some(word) => u64::from_le_bytes(*word),
+        None => last_word(bytes, at),
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn last_word(bytes: &[u8], at: usize) -> u64 {
+    let mut word = [0; 8];
+    word.iter_mut().zip(bytes.get(at..).unwrap_or(&[])).for_each(|(to, from)| *to = *from);
+    u64::from_le_bytes(word)
+}
+
+/// The number of `width` bits, at most 32, that begins at bit `at`; 0 for bits that are not there.
+#[inline(always)]
+pub(crate) fn number(bytes: &[u8], at: u64, width: u32) -> u32 {
+    let window = word(bytes, (at >> 3) as usize) >> (at & 7);
+    (window & 1u64.unbounded_shl(width).wrapping_sub(1)) as u32
+}
+
+/// Numbers of `width` bits each, from bit 0 on.
+pub(crate) fn numbers(bytes: &[u8], width: u32) -> impl Iterator<Item = u32> + '_ {
+    let mut at = 0u64;
+    core::iter::repeat_with(move || {
+        let number = number(bytes, at, width);
+        at = at.saturating_add(width.into());
+        number
+    })
+}
+
+/// Whether the bits of the last byte that a part of `bits` bits does not use are 0.
+pub(crate) fn is_padded(part: &[u8], bits: u64) -> bool {
+    match (part.last(), (bits & 7) as u32) {
+        (Some(&last), used @ 1..) => u32::from(last) >> used == 0,
+        _ => true,
+    }
+}
+
+/// Writes packed numbers.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Bits {
-    /// What lies behind the last bit is 0; there is a word more than the bits need, so that any window lies in two.
-    words: Vec<u64>,
-    len: u64,
+pub(crate) struct Packer {
+    bytes: Vec<u8>,
+    /// Bits that do not fill a byte yet, and how many.
+    word: u64,
+    count: u32,
 }
 
-impl Bits {
-    /// How many bits there are.
-    pub(crate) fn len(&self) -> u64 {
-        self.len
-    }
-
-    /// Appends the lowest `count` bits of `value`, whose others are 0; at most 64.
-    pub(crate) fn push(&mut self, value: u64, count: u32) {
-        let (word, place) = split(self.len);
-        let end = self.len.saturating_add(u64::from(count));
-        self.resize(end);
-        if let Some([low, high]) = self.words.get_mut(word..).and_then(|words| words.first_chunk_mut()) {
-            *low |= value << place;
-            *high |= value.unbounded_shr(u64::BITS.saturating_sub(place));
+impl Packer {
+    /// Appends the lowest `width` bits of `number`, whose others are 0; at most 32.
+    pub(crate) fn push(&mut self, number: u32, width: u32) {
+        self.word |= u64::from(number) << self.count;
+        self.count = self.count.saturating_add(width);
+        while self.count >= u8::BITS {
+            self.bytes.push(self.word as u8);
+            self.word >>= u8::BITS;
+            self.count = self.count.saturating_sub(u8::BITS);
         }
     }
 
-    /// Appends all bits of `bytes`.
-    pub(crate) fn append(&mut self, bytes: &[u8]) {
-        reserve(&mut self.words, bytes.len().div_ceil(8).saturating_add(2), usize::MAX);
-        let mut whole = bytes.chunks_exact(8);
-        for word in whole.by_ref() {
-            self.push(word.try_into().map_or(0, u64::from_le_bytes), u64::BITS);
+    /// The bytes; unused bits of the last are 0.
+    pub(crate) fn finish(mut self) -> Vec<u8> {
+        if self.count > 0 {
+            self.bytes.push(self.word as u8);
         }
-        for &byte in whole.remainder() {
-            self.push(byte.into(), u8::BITS);
-        }
+        self.bytes
     }
-
-    /// Drops all bits from `len` on.
-    pub(crate) fn truncate(&mut self, len: u64) {
-        self.resize(len.min(self.len));
-        let (word, place) = split(self.len);
-        if let Some([low, high]) = self.words.get_mut(word..).and_then(|words| words.first_chunk_mut()) {
-            *low &= (1u64 << place).wrapping_sub(1);
-            *high = 0;
-        }
-    }
-
-    /// The `count` bits from `at` on, at most 32; 0 for those that are not there.
-    #[inline]
-    pub(crate) fn get(&self, at: u64, count: u32) -> u32 {
-        let (word, place) = split(at);
-        let Some([low, high]) = self.words.get(word..).and_then(|words| words.first_chunk()) else {
-            return 0;
-        };
-        // In two steps, since no shift goes by 64.
-        let window = low >> place | (high << 1) << (63u32.saturating_sub(place));
-        window as u32 & 1u32.unbounded_shl(count).wrapping_sub(1)
-    }
-
-    /// The bytes; unused bits of the last are zero.
-    pub(crate) fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes: Vec<u8> = self.words.iter().flat_map(|word| word.to_le_bytes()).collect();
-        bytes.truncate(usize::try_from(self.len.div_ceil(8)).unwrap_or(usize::MAX));
-        bytes
-    }
-
-    /// Sets the length; new bits are 0.
-    fn resize(&mut self, len: u64) {
-        self.len = len;
-        let words = split(len).0.saturating_add(2);
-        if words > self.words.capacity() {
-            reserve(&mut self.words, 2, usize::MAX);
-        }
-        self.words.resize(words, 0);
-    }
-}
-
-/// The word in which a bit lies, and its place there.
-fn split(bit: u64) -> (usize, u32) {
-    (usize::try_from(bit >> 6).unwrap_or(usize::MAX), (bit & 63) as u32)
 }
 
 #[cfg(test)]

@@ -48,11 +48,6 @@ pub mod codes {
         CORNER = 504, Invalid, "PMESH-FACE-01", "a face names a wedge that has not arrived";
         /// A face with a vertex twice.
         FACE_VERTICES = 505, Invalid, "PMESH-FACE-01", "two corners of a face are the same vertex";
-        /// A face out of order.
-        FACE_ORDER = 506, Invalid, "PMESH-FACE-03", "faces are not sorted by their level of introduction";
-        /// A face that exists at an earlier level than that of its last vertex.
-        FACE_LEVEL = 507, Invalid, "PMESH-FACE-02",
-            "a face would exist before the vertex that is said to introduce it";
         /// A number in variable length that is too long or too large.
         VARINT = 508, Invalid, "PMESH-PKT-04",
             "a number of variable length is not in its shortest form or exceeds 32 bits";
@@ -62,12 +57,12 @@ pub mod codes {
         /// A wedge that becomes one that its parent vertex does not have.
         WEDGE_TARGET = 510, Invalid, "PMESH-COL-02",
             "a wedge becomes a wedge that the parent vertex does not have";
-        /// A switch code out of range, or one that does not undo a collapse.
-        SWITCH = 511, Invalid, "PMESH-SWI-02", "a corner switches to a wedge that does not collapse back onto it";
-        /// A packet that ends before its switch codes, or goes on after them.
-        SWITCH_LENGTH = 512, Invalid, "PMESH-SWI-03", "the switch codes do not fill the packet exactly";
-        /// Unused bits after the last switch code that are not zero.
-        SWITCH_PADDING = 513, Invalid, "PMESH-SWI-03", "unused bits after the switch codes are not zero";
+        /// A corner that switches to a wedge that does not descend from it.
+        SWITCH = 511, Invalid, "PMESH-SWI-06", "a corner switches to a wedge that does not collapse back onto it";
+        /// A packet that ends before its last part, or goes on after it.
+        PACKET_LENGTH = 512, Invalid, "PMESH-SWI-06", "the parts of a packet do not fill it exactly";
+        /// Unused bits of a packed part that are not zero.
+        PACKET_PADDING = 513, Invalid, "PMESH-PKT-02", "unused bits of a packet are not zero";
         /// A packet that is not the next one.
         PACKET_ORDER = 514, Invalid, "PMESH-LVL-04", "this packet is not the one that comes next";
         /// A coded packet whose symbols do not fill it.
@@ -79,6 +74,12 @@ pub mod codes {
             "the faces of a coded packet are more or fewer than the directory says";
         /// A coded packet that looks at more slots than its bytes allow.
         CODED_WORK = 518, Invalid, "PMESH-COD-12", "a coded packet asks for more work than its bytes allow";
+        /// A list of corners that switch that is none of ascending corners of earlier faces.
+        SWITCH_SLOTS = 519, Invalid, "PMESH-SWI-05",
+            "the list of corners that switch is not one of ascending corners of earlier faces";
+        /// Corners that pass more vertices than the bytes of their packet allow.
+        SWITCH_WORK = 520, Invalid, "PMESH-SWI-07",
+            "corners pass more vertices than the bytes of the packet allow; write smaller packets";
         /// More vertices, wedges or faces than the caller allows.
         LIMIT_COUNTS = 620, Limit, "PMESH-LIM-02", "the mesh has more vertices, wedges or faces than the limit";
     }

@@ -1,7 +1,7 @@
 //! Coded packets (spec/pmesh.md, section 8): the same things as raw ones, entropy coded.
 //!
 //! Writer and reader take the same walk over the growing mesh and ask a [`Coder`] for everything that is not known yet: the
-//! writer's tells what it is given, the reader's what it finds. What a packet says is then put into the form of a raw one.
+//! writer's tells what it is given, the reader's what it finds.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -9,7 +9,6 @@ use core::ops::Range;
 
 use ivg_wire::Code;
 
-use crate::bits::Bits;
 use crate::code::codes;
 use crate::header::PacketEntry;
 
@@ -134,10 +133,8 @@ struct Changes {
     shapes: Vec<(u32, Shape)>,
     /// Positions, where they are binary32 numbers.
     positions: Vec<[f32; 3]>,
-    /// Where the mesh is given its connectivity as it grows: the switch codes of all vertices. The next four are not kept then.
-    live: Option<Bits>,
-    /// Faces of the base.
-    base_faces: u32,
+    /// Whether the next four are kept: for the second pass, where there are attributes.
+    recorded: bool,
     /// Faces with their corners as introduced.
     introduced: Vec<[u32; 3]>,
     /// For each vertex from the base on, how many slots its parent had.

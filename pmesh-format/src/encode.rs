@@ -7,21 +7,22 @@ use ivg_wire::{
 };
 
 use crate::attributes::Attributes;
-use crate::bits::Bits;
-use crate::coded::{Given, Known, Plan, Saver, arranged, cells};
+use crate::coded::{Plan, arranged};
 use crate::header::{Header, PARAMETER_BITS, PacketEntry};
-use crate::lattice::{Lattice, bounds};
 use crate::material::write_names;
 use crate::mesh::Wedges;
-use crate::packet::{code_bits, write_varint};
 use crate::progressive::ProgressiveMesh;
-use crate::slots::Slots;
 use crate::storage::{Mode, Positions};
-use crate::wire::{DIRECTORY, FORMAT, HEADER_BYTES, MATERIALS};
+use crate::wire::{DIRECTORY, HEADER_BYTES, MATERIALS};
 
+mod codes;
 mod error;
+mod raw;
+mod writer;
 
 pub use error::EncodeError;
+use raw::RawWriter;
+use writer::{Quantised, Writer, uv_bounds};
 
 /// How many vertices each packet brings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,24 +162,18 @@ pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>
     let arranged = (options.mode == Mode::Coded).then(|| options.arranged(mesh));
     let mesh = arranged.as_ref().unwrap_or(mesh);
     let writer = Writer::new(mesh, options);
-    let known = (options.mode == Mode::Coded).then(|| Quantised::new(&writer));
-    let mut saver = known.as_ref().map(|known| writer.saver(known));
     let names = write_names(&mesh.material_names).ok_or(EncodeError::MaterialName)?;
-
-    let mut packets: Vec<PacketEntry> = Vec::new();
-    let mut payloads = Vec::new();
-    let vertices = mesh.positions.len() as u32;
-    while packets.last().map_or(0, |p| p.vertices.end) < vertices {
-        let entry = writer.entry(packets.last(), options.packets);
-        let payload = match &mut saver {
-            Some(saver) => saver.packet(&entry),
-            None => writer.payload(&entry),
-        };
-        let record = record_len(payload.len() as u64).filter(|&len| len <= u64::from(Maximum::RECORD_BYTES));
-        record.ok_or(EncodeError::PacketSize { packet: packets.len() })?;
-        packets.push(PacketEntry { payload_bytes: payload.len() as u32, ..entry });
-        payloads.push(payload);
-    }
+    let (packets, payloads) = match options.mode {
+        Mode::Raw => {
+            let mut raw = RawWriter::new(&writer);
+            packets(&writer, options.packets, |entry| raw.packet(entry))?
+        }
+        Mode::Coded => {
+            let quantised = Quantised::new(&writer);
+            let mut saver = writer.saver(&quantised);
+            packets(&writer, options.packets, |entry| saver.packet(entry))?
+        }
+    };
 
     let mut header = writer.header(packets);
     let (bytes, directory) = header.to_bytes();
@@ -212,278 +207,23 @@ pub fn encode(mesh: &ProgressiveMesh, options: &EncodeOptions) -> Result<Vec<u8>
     Ok(out)
 }
 
-/// What coded packets hold, in whole numbers.
-struct Quantised {
-    cells: Vec<[i32; 3]>,
-    /// How attributes are stored, if there are any.
-    plan: Option<Plan>,
-    normals: Vec<[i32; 2]>,
-    uvs: Vec<[i32; 2]>,
-    /// With seams, the faces with vertices instead of wedges.
-    faces: Option<Vec<(u32, [u32; 3], usize)>>,
-}
-
-impl Quantised {
-    fn new(writer: &Writer<'_>) -> Self {
-        let mesh = writer.mesh;
-        let plan = Plan::new(&writer.header(Vec::new()));
-        let vertex = |wedge: u32| mesh.wedges.vertices[wedge as usize];
-        let faces = || writer.faces.iter().map(|&(level, face, k)| (level, face.map(vertex), k)).collect();
-        Self {
-            cells: cells(writer.bounds, writer.positions, &mesh.positions),
-            normals: plan.map_or_else(Vec::new, |plan| plan.normals(&mesh.wedges.normals)),
-            uvs: plan.map_or_else(Vec::new, |plan| plan.uvs(&mesh.wedges.uvs)),
-            plan,
-            faces: writer.attributes.seams.then(faces),
-        }
+/// The packets, with their payloads; `write` gives that of the next one, and may move its end forward.
+fn packets(
+    writer: &Writer<'_>,
+    size: PacketSize,
+    mut write: impl FnMut(&mut PacketEntry) -> Vec<u8>,
+) -> Result<(Vec<PacketEntry>, Vec<Vec<u8>>), EncodeError> {
+    let (mut packets, mut payloads) = (Vec::<PacketEntry>::new(), Vec::new());
+    while packets.last().map_or(0, |p| p.vertices.end) < writer.vertex_count() {
+        let start = packets.last().map_or(0, |p| p.vertices.end);
+        let mut entry = writer.entry(packets.last(), size.end(start, writer.base(), writer.vertex_count()));
+        let payload = write(&mut entry);
+        let record = record_len(payload.len() as u64).filter(|&len| len <= u64::from(Maximum::RECORD_BYTES));
+        record.ok_or(EncodeError::PacketSize { packet: packets.len() })?;
+        packets.push(PacketEntry { payload_bytes: payload.len() as u32, ..entry });
+        payloads.push(payload);
     }
-}
-
-/// A mesh, its faces in stored order, and the switch codes of its vertices.
-struct Writer<'a> {
-    mesh: &'a ProgressiveMesh,
-    attributes: Attributes,
-    mode: Mode,
-    positions: Positions,
-    /// Bits of coded normals and texture coordinates.
-    bits: [u8; 2],
-    /// The bounding box.
-    bounds: [[f32; 3]; 2],
-    /// First wedge of each vertex, and the end.
-    wedge_starts: Vec<u32>,
-    /// Level of introduction, corners as mapped there, and index in the mesh of each stored face.
-    faces: Vec<(u32, [u32; 3], usize)>,
-    switches: Switches,
-}
-
-impl<'a> Writer<'a> {
-    fn new(mesh: &'a ProgressiveMesh, options: &EncodeOptions) -> Self {
-        let vertices = mesh.positions.len();
-        let mut wedge_starts = alloc::vec![0; vertices + 1];
-        for &v in &mesh.wedges.vertices {
-            wedge_starts[v as usize + 1] += 1;
-        }
-        for v in 0..vertices {
-            wedge_starts[v + 1] += wedge_starts[v];
-        }
-        let faces = mesh.stored_faces();
-        let attributes = Attributes {
-            normals: !mesh.wedges.normals.is_empty(),
-            uvs: !mesh.wedges.uvs.is_empty(),
-            colours: !mesh.wedges.colours.is_empty(),
-            materials: mesh.materials.iter().any(|&m| m != 0),
-            seams: mesh.wedges.len() != vertices,
-        };
-        let switches = Switches::find(mesh, &faces, &wedge_starts);
-        let bounds = bounds(&mesh.positions);
-        let EncodeOptions { mode, positions, normal_bits, uv_bits, .. } = *options;
-        let bits = [normal_bits, uv_bits];
-        Self { mesh, attributes, mode, positions, bits, bounds, wedge_starts, faces, switches }
-    }
-
-    /// The writer of coded packets.
-    fn saver<'b>(&'b self, quantised: &'b Quantised) -> Saver<'b> {
-        let switches = (&self.switches.codes[..], &self.switches.ranges[..]);
-        let given = |plan| {
-            let given = Given {
-                wedge_starts: &self.wedge_starts,
-                targets: &self.mesh.wedge_collapse,
-                switches,
-                faces: &self.faces,
-                materials: &self.mesh.materials,
-                normals: &quantised.normals,
-                uvs: &quantised.uvs,
-                colours: &self.mesh.wedges.colours,
-            };
-            (plan, given)
-        };
-        let known = Known {
-            mesh: self.mesh,
-            faces: quantised.faces.as_deref().unwrap_or(&self.faces),
-            switches,
-            cells: &quantised.cells,
-            wedges: quantised.plan.map(given),
-        };
-        Saver::new(known, self.bounds, self.positions)
-    }
-
-    /// The packet that follows `before`; its payload's length is not known yet.
-    fn entry(&self, before: Option<&PacketEntry>, size: PacketSize) -> PacketEntry {
-        let start = before.map_or((0, 0, 0), |p| (p.vertices.end, p.wedges.end, p.faces.end));
-        let vertices = self.mesh.positions.len() as u32;
-        let end = size.end(start.0, self.mesh.base_vertices, vertices);
-        // The coarsest level that the packet brings lacks this vertex and all later ones.
-        let lacking = (start.0 + 1).max(self.mesh.base_vertices) - self.mesh.base_vertices;
-        PacketEntry {
-            vertices: start.0..end,
-            wedges: start.1..self.wedge_starts[end as usize],
-            faces: start.2..self.faces.partition_point(|&(level, ..)| level <= end) as u32,
-            payload_bytes: 0,
-            error: self.mesh.errors.get(lacking as usize).copied().unwrap_or(0.0),
-            bytes: 0..0,
-        }
-    }
-
-    /// The payload of a packet (PMESH-PKT-02).
-    fn payload(&self, entry: &PacketEntry) -> Vec<u8> {
-        let mesh = self.mesh;
-        let vertices = entry.vertices.start as usize..entry.vertices.end as usize;
-        let wedges = entry.wedges.start as usize..entry.wedges.end as usize;
-        let faces = &self.faces[entry.faces.start as usize..entry.faces.end as usize];
-        let base = mesh.base_vertices as usize;
-        let splits = vertices.start.max(base) - base..vertices.end - base;
-        let mut out = Vec::new();
-        match self.positions.bits() {
-            None => floats(&mut out, &mesh.positions[vertices.clone()]),
-            Some(bits) => {
-                points(&mut out, &mesh.positions[vertices.clone()], &Lattice::new(self.bounds, bits));
-            }
-        }
-        if self.attributes.normals {
-            floats(&mut out, &mesh.wedges.normals[wedges.clone()]);
-        }
-        if self.attributes.uvs {
-            floats(&mut out, &mesh.wedges.uvs[wedges.clone()]);
-        }
-        if self.attributes.colours {
-            out.extend(mesh.wedges.colours[wedges.clone()].as_flattened());
-        }
-        for wedge in faces.iter().flat_map(|(_, corners, _)| corners) {
-            out.extend_from_slice(&wedge.to_le_bytes());
-        }
-        out.extend(mesh.collapse[splits.clone()].iter().flat_map(|parent| parent.to_le_bytes()));
-        if self.attributes.materials {
-            out.extend(faces.iter().flat_map(|&(_, _, i)| mesh.materials[i].to_le_bytes()));
-        }
-        if self.attributes.seams {
-            for v in vertices {
-                write_varint(&mut out, self.wedge_starts[v + 1] - self.wedge_starts[v]);
-            }
-            let base_wedges = self.wedge_starts[base];
-            for v in splits.clone() {
-                let first_of_parent = self.wedge_starts[mesh.collapse[v] as usize];
-                for w in self.wedge_starts[base + v]..self.wedge_starts[base + v + 1] {
-                    write_varint(&mut out, mesh.wedge_collapse[(w - base_wedges) as usize] - first_of_parent);
-                }
-            }
-        }
-        let mut bits = Bits::default();
-        for v in splits {
-            let wedges = self.wedge_starts[base + v + 1] - self.wedge_starts[base + v];
-            for &code in self.switches.of(v) {
-                bits.push(code.into(), code_bits(wedges));
-            }
-        }
-        out.extend_from_slice(&bits.to_bytes());
-        out
-    }
-
-    /// The header, as far as it is known before the file is laid out.
-    fn header(&self, packets: Vec<PacketEntry>) -> Header {
-        let mesh = self.mesh;
-        let coded = self.mode == Mode::Coded;
-        Header {
-            minor: FORMAT.minor,
-            optional_features: 0,
-            header_bytes: FORMAT.header_bytes,
-            content_id: ContentId(0),
-            data_offset: 0,
-            file_bytes: 0,
-            vertex_count: mesh.positions.len() as u32,
-            wedge_count: mesh.wedges.len() as u32,
-            face_count: self.faces.len() as u32,
-            base_vertices: mesh.base_vertices,
-            mode: self.mode,
-            positions: self.positions,
-            attributes: self.attributes,
-            origin: mesh.origin,
-            bounds: self.bounds,
-            normal_bits: if coded && self.attributes.normals { self.bits[0] } else { 0 },
-            uv_bits: if coded && self.attributes.uvs { self.bits[1] } else { 0 },
-            uv_bounds: if coded { uv_bounds(&mesh.wedges.uvs) } else { [[0.0; 2]; 2] },
-            packets,
-        }
-    }
-}
-
-/// The switch codes of each vertex from the base on, in the order of the slots of its parent (PMESH-SWI-01).
-struct Switches {
-    codes: Vec<u32>,
-    /// Where the codes of each vertex lie.
-    ranges: Vec<(usize, usize)>,
-}
-
-impl Switches {
-    /// Takes vertices away from the finest level down, as a reader that goes down does, and notes what switched.
-    fn find(mesh: &ProgressiveMesh, faces: &[(u32, [u32; 3], usize)], wedge_starts: &[u32]) -> Self {
-        let base = mesh.base_vertices as usize;
-        let base_wedges = wedge_starts.get(base).copied().unwrap_or(0);
-        let mut corners: Vec<[u32; 3]> = faces.iter().map(|&(_, _, i)| mesh.faces[i]).collect();
-        let vertex_of = |w: u32| mesh.wedges.vertices[w as usize];
-        let mut slots = Slots::default();
-        slots.resize(mesh.positions.len(), mesh.positions.len());
-        for (face, corners) in (0u32..).zip(&corners) {
-            for (corner, &wedge) in (0u32..).zip(corners) {
-                slots.push(vertex_of(wedge), 3 * face + corner);
-            }
-        }
-        let mut codes = Vec::new();
-        let mut ranges = alloc::vec![(0, 0); mesh.collapse.len()];
-        let mut left = faces.len();
-        for split in (0..mesh.collapse.len()).rev() {
-            let vertex = (base + split) as u32;
-            while left > 0 && faces[left - 1].0 == vertex + 1 {
-                left -= 1;
-                debug_assert_eq!(corners[left], faces[left].1, "corners as mapped at introduction");
-                for wedge in corners[left] {
-                    slots.pop(vertex_of(wedge));
-                }
-            }
-            let start = codes.len();
-            slots.merge(vertex, mesh.collapse[split], |slot, was_child| {
-                let corner = &mut corners[(slot / 3) as usize][(slot % 3) as usize];
-                if was_child {
-                    codes.push(*corner - wedge_starts[vertex as usize] + 1);
-                    *corner = mesh.wedge_collapse[(*corner - base_wedges) as usize];
-                } else {
-                    codes.push(0);
-                }
-            });
-            // Canonical order is descending.
-            codes[start..].reverse();
-            ranges[split] = (start, codes.len());
-        }
-        Self { codes, ranges }
-    }
-
-    fn of(&self, split: usize) -> &[u32] {
-        let (start, end) = self.ranges[split];
-        &self.codes[start..end]
-    }
-}
-
-/// The least and the greatest texture coordinates; 0 without any.
-fn uv_bounds(uvs: &[[f32; 2]]) -> [[f32; 2]; 2] {
-    let first = uvs.first().map_or([[0.0; 2]; 2], |&uv| [uv, uv]);
-    uvs.iter().fold(first, |[low, high], uv| {
-        [core::array::from_fn(|k| low[k].min(uv[k])), core::array::from_fn(|k| high[k].max(uv[k]))]
-    })
-}
-
-fn floats<const N: usize>(out: &mut Vec<u8>, array: &[[f32; N]]) {
-    out.reserve(4 * N * array.len());
-    for x in array.as_flattened() {
-        out.extend_from_slice(&x.to_le_bytes());
-    }
-}
-
-/// The nearest points of the lattice, four u16 each, the last 0 (PMESH-POS-03).
-fn points(out: &mut Vec<u8>, positions: &[[f32; 3]], lattice: &Lattice) {
-    for &position in positions {
-        // A lattice has at most 16 bits.
-        let [x, y, z] = lattice.nearest(position).map(|q| q as u16);
-        out.extend([x, y, z, 0].into_iter().flat_map(u16::to_le_bytes));
-    }
+    Ok((packets, payloads))
 }
 
 #[cfg(test)]

@@ -331,6 +331,7 @@ impl Header {
             wedges: entry.wedges.end.saturating_sub(entry.wedges.start),
             faces: entry.faces.end.saturating_sub(entry.faces.start),
             splits: entry.vertices.end.saturating_sub(first_split),
+            end_vertex: entry.vertices.end,
         }
     }
 

@@ -81,13 +81,13 @@ impl<'a> Packet<'a> {
         self.part(|layout| layout.colours)
     }
 
-    /// Corners of its faces as mapped where each is introduced, three u32 wedge indices each.
+    /// Corners of its faces as mapped at the end of the packet, three u32 wedge indices each.
     #[must_use]
     pub fn corner_bytes(&self) -> &'a [u8] {
         self.part(|layout| layout.corners)
     }
 
-    /// Parents of its vertices from the base on, one u32 each.
+    /// Parents of its vertices from the base on, packed (PMESH-COL-01).
     #[must_use]
     pub fn parent_bytes(&self) -> &'a [u8] {
         self.part(|layout| layout.parents)
@@ -136,7 +136,7 @@ impl<'a> Varints<'a> {
     pub(crate) fn read(&mut self) -> Result<u32, Code> {
         let mut value = 0u32;
         for shift in (0..35).step_by(7) {
-            let Some(&byte) = self.bytes.get(self.at) else { return Err(codes::SWITCH_LENGTH) };
+            let Some(&byte) = self.bytes.get(self.at) else { return Err(codes::PACKET_LENGTH) };
             self.at = self.at.saturating_add(1);
             let bits = u32::from(byte & 0x7F);
             if (shift == 28 && bits > 0xF) || (shift > 0 && byte == 0) {
@@ -160,7 +160,7 @@ pub(crate) fn write_varint(out: &mut alloc::vec::Vec<u8>, mut value: u32) {
     out.push(value as u8);
 }
 
-/// Bits of a switch code for a vertex with that many wedges: enough for 0 to `wedges` (PMESH-SWI-02).
-pub(crate) fn code_bits(wedges: u32) -> u32 {
-    u32::BITS.saturating_sub(wedges.leading_zeros())
+/// How many corners of earlier faces a raw packet switches (PMESH-SWI-05): the first number of its payload.
+pub(crate) fn switch_count(payload: &[u8]) -> u32 {
+    payload.first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes))
 }

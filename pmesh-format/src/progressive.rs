@@ -64,7 +64,7 @@ impl ProgressiveMesh {
         wedge
     }
 
-    /// The smallest level at which `face` exists, and its corners as mapped there (spec PMESH-FACE-02).
+    /// The smallest level at which `face` exists, and its corners as mapped there (spec PMESH-DEF-05).
     ///
     /// `None` if two of its corners are the same vertex in the full mesh already.
     ///
@@ -98,7 +98,7 @@ impl ProgressiveMesh {
     }
 
     /// The faces in the order in which a file stores them: by level of introduction, ties in the order given; each
-    /// with that level and its corners as mapped there (spec PMESH-FACE-03).
+    /// with that level and its corners as mapped there (spec PMESH-FACE-06).
     ///
     /// # Panics
     /// If the tables are not valid; [`encode`](crate::encode) checks them first.

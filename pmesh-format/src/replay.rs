@@ -1,7 +1,8 @@
 //! The mesh at any level of what has arrived: packets go in, levels come out.
 //!
-//! The file holds what changes on the way up. [`Replay`] walks that way and back: adding vertex *v* lets some corner slots of
-//! its parent switch to *v* and appends the faces that *v* introduces; taking it away undoes both. Nothing else is touched.
+//! A packet says how the mesh is at its end. What happens in between, which corner slots switch to each vertex and which faces
+//! it introduces, is found out when somebody steps to another level for the first time; from then on packet by packet.
+//! Adding a vertex or taking it away touches these slots and nothing else.
 
 use alloc::boxed::Box;
 use alloc::string::String;
@@ -11,23 +12,28 @@ use core::ops::{Range, RangeInclusive};
 use ivg_wire::Error;
 
 use crate::attributes::Attributes;
-use crate::bits::Bits;
 use crate::code::codes;
 use crate::coded::State;
-use crate::decode::Event;
+use crate::decode::{Event, decode_all};
 use crate::header::Header;
+use crate::limits::Limits;
 use crate::material::material_names;
 use crate::mesh::{IndexedMesh, Wedges};
 use crate::packet::Packet;
-use crate::slots::Slots;
 use crate::wire::MATERIALS;
 
+mod arrays;
+mod descent;
 mod levels;
 mod load;
+mod steps;
+mod switch;
 mod touched;
-mod walk;
 mod whole;
 
+pub(crate) use descent::{Descendants, Descent};
+use steps::Steps;
+pub(crate) use switch::DEPTHS_A_BYTE;
 use touched::Touched;
 
 /// A mesh that can be shown at any number of vertices that has arrived.
@@ -51,23 +57,20 @@ pub struct Replay {
     materials: Vec<u16>,
     /// Parents of the vertices from the base on.
     parents: Vec<u32>,
-    /// For each vertex from the base on, how many faces there are with it.
-    face_ends: Vec<u32>,
-    /// Faces of the base.
-    base_faces: u32,
     /// Empty where wedge and vertex are the same, as the next two are: the end of each vertex's wedges.
     wedge_ends: Vec<u32>,
     /// The vertex of each wedge.
     wedge_vertices: Vec<u32>,
     /// What each wedge from those of the base on becomes.
     wedge_targets: Vec<u32>,
-    slots: Slots,
+    /// How to step from level to level; `None` until somebody does.
+    steps: Option<Box<Steps>>,
     /// What has been learnt from coded packets.
     coded: Option<Box<State>>,
-    /// Switch codes of all vertices from the base on.
-    switches: Bits,
-    /// Where the switch codes of the next vertex begin.
-    switch_at: u64,
+    /// The slots of earlier faces that the last packet has switched.
+    switched: Vec<u32>,
+    /// Which wedges of a packet descend from which.
+    descent: Descent,
     /// Faces of which a corner has switched since the last report.
     touched: Touched,
 }
@@ -143,20 +146,52 @@ impl Replay {
     /// The first rule that the packet breaks, with its place in the file; the packet is not the next one of this file. What
     /// has arrived before, and the level, stay as they were.
     pub fn apply(&mut self, packet: &Packet<'_>) -> Result<LevelChange, Error> {
+        let from = self.level;
+        let faces = self.face_count();
+        self.take(packet)?;
+        let earlier = packet.entry().faces.start;
+        self.touched.resize(earlier as usize, self.header.face_count as usize);
+        self.switched.iter().for_each(|slot| self.touched.mark(slot / 3));
+        Ok(self.report(from, faces))
+    }
+
+    /// Reads a whole file and goes to its finest level, without saying what each packet changes.
+    ///
+    /// # Errors
+    ///
+    /// The first rule that the file breaks; truncated if it is valid as far as it goes.
+    pub fn from_file(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
+        let mut replay = Self::default();
+        decode_all(bytes, limits, |event| match event {
+            Event::Packet(packet) => replay.take(&packet),
+            other => replay.accept(&other).map(drop),
+        })?;
+        Ok(replay)
+    }
+
+    /// Takes in the next packet; the level is the highest then.
+    fn take(&mut self, packet: &Packet<'_>) -> Result<(), Error> {
         if packet.index() != self.packets || packet.header().content_id != self.header.content_id {
             return Err(packet.error(codes::PACKET_ORDER, 0));
         }
         let from = self.level;
-        let faces = self.face_count();
         self.touched.clear();
         self.walk(self.max_level());
-        if let Err(error) = self.load(packet) {
+        if let Err((code, at)) = self.load(packet) {
+            self.truncate(packet);
             self.walk(from);
             self.touched.clear();
-            return Err(error);
+            return Err(packet.error(code, at));
         }
+        self.level = packet.entry().vertices.end;
         self.packets += 1;
-        Ok(self.report(from, faces))
+        self.extend_steps(packet.entry());
+        if self.packets == self.header.packet_count() {
+            // No packet will need them again.
+            self.coded = None;
+            self.descent = Descent::default();
+        }
+        Ok(())
     }
 
     /// Goes to the level of `level` vertices.
@@ -322,21 +357,21 @@ impl Replay {
         if self.attributes().seams { self.wedge_vertices[wedge as usize] } else { wedge }
     }
 
-    /// The wedge that a wedge of a vertex from the base on becomes when its vertex goes.
-    fn target(&self, wedge: u32) -> u32 {
-        if self.attributes().seams {
-            let base_wedges = self.wedges_of(self.base()).start;
-            self.wedge_targets[(wedge - base_wedges) as usize]
-        } else {
-            self.parents[(wedge - self.base()) as usize]
-        }
+    /// The first wedge of a vertex that collapses, once the base has arrived.
+    fn first_split_wedge(&self) -> u32 {
+        self.wedges_of(self.base()).start
+    }
+
+    /// What each wedge from [`Replay::first_split_wedge`] on becomes when its vertex goes.
+    fn targets(&self) -> &[u32] {
+        if self.attributes().seams { &self.wedge_targets } else { &self.parents }
     }
 
     fn faces_at(&self, level: u32) -> u32 {
-        match level.checked_sub(self.base() + 1) {
-            Some(split) => self.face_ends[split as usize],
-            None if level == 0 => 0,
-            None => self.base_faces,
+        match &self.steps {
+            // Without, the level is the finest, or there is none yet.
+            None => self.corners.len() as u32,
+            Some(steps) => steps.faces_at(level),
         }
     }
 

@@ -10,6 +10,7 @@ use zerocopy::little_endian::{F32, F64, U16, U32};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
 use crate::attributes::Attributes;
+use crate::bits::width;
 use crate::storage::Positions;
 
 /// The major version that this crate reads and writes; 0 is a draft (COM-VER-01).
@@ -125,30 +126,35 @@ pub(crate) struct PacketCounts {
     pub(crate) faces: u32,
     /// Vertices that collapse: those from the base on.
     pub(crate) splits: u32,
+    /// Vertices of this and all earlier packets.
+    pub(crate) end_vertex: u32,
 }
 
-/// Where the arrays of a raw packet lie in its payload (PMESH-PKT-02).
+/// Where the parts of a raw packet lie in its payload whose lengths follow from the directory (PMESH-PKT-02).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PacketLayout {
+    pub(crate) switch_count: Range<usize>,
     pub(crate) positions: Range<usize>,
     pub(crate) normals: Range<usize>,
     pub(crate) uvs: Range<usize>,
     pub(crate) colours: Range<usize>,
     pub(crate) corners: Range<usize>,
-    pub(crate) parents: Range<usize>,
     pub(crate) materials: Range<usize>,
-    /// Numbers of variable length, then switch codes, begin here.
+    /// Packed, so many bits each.
+    pub(crate) parents: Range<usize>,
+    pub(crate) parent_bits: u32,
+    /// Numbers of variable length, then switches, begin here.
     pub(crate) rest: usize,
 }
 
-/// Bytes of an element of each array: three binary32 numbers or four u16, two binary32 numbers, four bytes, three or one u32,
+/// Bytes of an element of each array: one u32, three binary32 numbers or four u16, two binary32 numbers, four bytes, three u32,
 /// one u16.
+pub(crate) const COUNT_BYTES: usize = 4;
 pub(crate) const VECTOR_BYTES: usize = 12;
 pub(crate) const QUANTISED_BYTES: usize = 8;
 pub(crate) const UV_BYTES: usize = 8;
 pub(crate) const COLOUR_BYTES: usize = 4;
 pub(crate) const CORNERS_BYTES: usize = 12;
-pub(crate) const PARENT_BYTES: usize = 4;
 pub(crate) const MATERIAL_BYTES: usize = 2;
 
 impl PacketLayout {
@@ -163,15 +169,22 @@ impl PacketLayout {
             Some(start..end)
         };
         let position_bytes = if positions == Positions::F32 { VECTOR_BYTES } else { QUANTISED_BYTES };
-        let PacketCounts { vertices, wedges, faces, splits } = counts;
+        let PacketCounts { vertices, wedges, faces, splits, end_vertex } = counts;
+        let parent_bits = width(end_vertex);
         Some(Self {
+            switch_count: array(true, 1, COUNT_BYTES)?,
             positions: array(true, vertices, position_bytes)?,
             normals: array(attributes.normals, wedges, VECTOR_BYTES)?,
             uvs: array(attributes.uvs, wedges, UV_BYTES)?,
             colours: array(attributes.colours, wedges, COLOUR_BYTES)?,
             corners: array(true, faces, CORNERS_BYTES)?,
-            parents: array(true, splits, PARENT_BYTES)?,
             materials: array(attributes.materials, faces, MATERIAL_BYTES)?,
+            parents: {
+                let bits = u64::from(splits).checked_mul(parent_bits.into())?;
+                let bytes = u32::try_from(bits.div_ceil(8)).ok()?;
+                array(true, bytes, 1)?
+            },
+            parent_bits,
             rest: end,
         })
     }

@@ -11,7 +11,7 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// PMESH-LIM-03 and COM-LIM-03 without the constant: what the directory, the decoder and the replay may hold for each byte
 /// received.
-const BYTES_PER_BYTE: usize = 8;
+const BYTES_PER_BYTE: usize = 64;
 /// The constant of PMESH-LIM-03.
 const FIXED: usize = 65_536;
 

@@ -161,10 +161,9 @@ fn the_clause_of_every_error_names_a_vector_with_that_error() {
 }
 
 /// Rules for readers of `.pmesh` for which no file with one defect can be made, and why.
-const WITHOUT_REFUSED_FILE: [(&str, &str); 7] = [
+const WITHOUT_REFUSED_FILE: [(&str, &str); 6] = [
     ("PMESH-HDR-01", "what is judged first shows in files with several defects"),
     ("PMESH-PKT-03", "the same"),
-    ("PMESH-FACE-04", "the same"),
     ("PMESH-LVL-01", "what a reader shows; the manifest has hashes of it"),
     ("PMESH-LVL-05", "a recommendation"),
     ("PMESH-LIM-03", "a reader refuses nothing for it"),

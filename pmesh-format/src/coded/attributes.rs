@@ -1,6 +1,6 @@
 //! Attributes of coded packets: after the splits of a packet the same way is gone once more, with wedges (PMESH-COD-13 to -17).
 
-mod raw;
+mod hand_over;
 mod values;
 
 use alloc::boxed::Box;
@@ -16,11 +16,9 @@ use super::ring::MOST as SHORT;
 use super::wedges::{MOST, Weights};
 use super::{Changes, Fault, LENGTH, State};
 use crate::attributes::Attributes;
-use crate::bits::Bits;
 use crate::code::codes;
 use crate::header::{Header, PacketEntry};
 use crate::lattice::Lattice;
-use crate::packet::{code_bits, write_varint};
 use crate::slots::Slots;
 
 /// Slots of a vertex among which a face beside a new one is looked for.
@@ -173,19 +171,8 @@ pub(super) struct Wedged {
 /// What a packet has brought and changed.
 #[derive(Debug, Default)]
 pub(super) struct Brought {
-    /// Faces with their corners as introduced.
-    introduced: Vec<[u32; 3]>,
-    /// Switch codes in the order of raw packets (PMESH-SWI-02).
-    switches: Bits,
     /// Classes that were there before, with their wedges.
     classes: Vec<(u32, [u8; 3])>,
-}
-
-impl Brought {
-    /// Faces with their corners as introduced.
-    pub(super) fn introduced(&self) -> &[[u32; 3]] {
-        &self.introduced
-    }
 }
 
 /// What a step needs beside wedges.
@@ -314,7 +301,7 @@ impl Wedged {
                 let known = self.known_material(step);
                 self.materials.push(step.coder.raw(MATERIAL_BITS, known.into()) as u16);
             }
-            self.introduce(step, corners, vertices);
+            self.introduce(corners, vertices);
             if step.coder.failed() {
                 return Err(LENGTH);
             }
@@ -435,8 +422,6 @@ impl Wedged {
             chosen[k] = wedge - first + 1;
         }
         // From here on nothing fails.
-        let width = code_bits(count);
-        chosen.iter().rev().for_each(|&code| step.brought.switches.push(code.into(), width));
         self.slots.split(parent, vertex, switches);
         let list = self.slots.of(vertex);
         let mut wedges = chosen.iter().filter(|&&code| code > 0).map(|code| first + code - 1);
@@ -502,7 +487,7 @@ impl Wedged {
         }
         let [p, v, x] = corners;
         let corners = if turned { [p, v, x] } else { [p, x, v] };
-        self.introduce(step, corners, vertices);
+        self.introduce(corners, vertices);
         if step.coder.failed() { Err(LENGTH) } else { Ok(()) }
     }
 
@@ -532,13 +517,12 @@ impl Wedged {
         step.coder.raw(MATERIAL_BITS, known.into()) as u16
     }
 
-    fn introduce<C>(&mut self, step: &mut Step<'_, C>, corners: [u32; 3], vertices: [u32; 3]) {
+    fn introduce(&mut self, corners: [u32; 3], vertices: [u32; 3]) {
         let face = self.corners.len() as u32;
         for (slot, vertex) in (3 * face..).zip(vertices) {
             self.slots.push(vertex, slot);
         }
         self.corners.push(corners);
-        step.brought.introduced.push(corners);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Reading a coded packet into a mesh at its finest level: the decoder works on the lists of the mesh itself, so that nothing
+//! Reading a coded packet into a mesh at its finest level: the decoder works on the arrays of the mesh itself, so that nothing
 //! is there twice and nothing is walked through again.
 
 use alloc::vec::Vec;
@@ -6,32 +6,35 @@ use core::mem::swap;
 
 use super::walk::Bounds;
 use super::{Changes, Fault, State};
-use crate::bits::Bits;
 use crate::code::codes;
 use crate::header::{Header, PacketEntry};
 use crate::lattice::Lattice;
 use crate::room::reserve;
-use crate::slots::Slots;
 
-/// A mesh at its finest level whose wedges are its vertices and whose faces all have material 0.
+/// A mesh at its finest level.
 pub(crate) struct Live<'a> {
     pub(crate) positions: &'a mut Vec<[f32; 3]>,
+    pub(crate) normals: &'a mut Vec<[f32; 3]>,
+    pub(crate) uvs: &'a mut Vec<[f32; 2]>,
+    pub(crate) colours: &'a mut Vec<[u8; 4]>,
     pub(crate) corners: &'a mut Vec<[u32; 3]>,
-    pub(crate) slots: &'a mut Slots,
+    pub(crate) materials: &'a mut Vec<u16>,
     pub(crate) parents: &'a mut Vec<u32>,
-    /// Faces with each vertex from the base on.
-    pub(crate) face_ends: &'a mut Vec<u32>,
-    pub(crate) base_faces: &'a mut u32,
-    /// Switch codes of all vertices from the base on (PMESH-SWI-01).
-    pub(crate) switches: &'a mut Bits,
+    /// Where the file has seams: the end of each vertex's wedges, the vertex of each wedge, what each from those of the base on
+    /// becomes.
+    pub(crate) wedge_ends: &'a mut Vec<u32>,
+    pub(crate) wedge_vertices: &'a mut Vec<u32>,
+    pub(crate) wedge_targets: &'a mut Vec<u32>,
+    /// The slots of earlier faces that a packet switches, in any order.
+    pub(crate) switched: &'a mut Vec<u32>,
 }
 
 impl State {
     /// Reads the next packet into `mesh`, which those before have been read into.
     ///
     /// # Errors
-    /// The first rule that it breaks. Positions and switch codes may be longer then; nothing else has changed.
-    pub(crate) fn read_live(
+    /// The first rule that it breaks. Positions may be longer then; nothing else has changed.
+    pub(crate) fn read(
         &mut self,
         header: &Header,
         entry: &PacketEntry,
@@ -45,10 +48,11 @@ impl State {
         reserve(&mut self.histories, vertices, total);
         reserve(mesh.corners, faces, header.face_count as usize);
         reserve(mesh.parents, splits, total - self.base as usize);
-        reserve(mesh.face_ends, splits, total - self.base as usize);
-        mesh.slots.resize(entry.vertices.end as usize, total);
+        reserve(&mut self.face_ends, splits, total - self.base as usize);
+        self.slots.resize(entry.vertices.end as usize, total);
         let (models, packets) = (self.models.clone(), self.packets);
-        let mut changes = Changes { live: Some(core::mem::take(mesh.switches)), ..Changes::default() };
+        let attributes = self.wedged.as_ref().map(|wedged| wedged.models());
+        let mut changes = Changes { recorded: self.wedged.is_some(), ..Changes::default() };
         self.exchange(&mut mesh);
         let read = self
             .read_packet(header, entry, payload, &mut changes)
@@ -57,22 +61,30 @@ impl State {
             self.take_back(entry, &changes);
             self.models = models;
             self.packets = packets;
+            if let (Some(wedged), Some(models)) = (&mut self.wedged, attributes) {
+                wedged.set_models(models);
+            }
         }
         self.exchange(&mut mesh);
-        *mesh.switches = changes.live.take().unwrap_or_default();
         read?;
-        if entry.vertices.start < self.base {
-            *mesh.base_faces = changes.base_faces;
+        // Corners only ever switch to later vertices: those that have switched are now at vertices of this packet.
+        let earlier = 3 * entry.faces.start;
+        let slots = |vertex: u32| self.slots.of(vertex).iter().copied().filter(|&slot| slot < earlier);
+        mesh.switched.extend(entry.vertices.clone().flat_map(slots));
+        if let Some(wedged) = &self.wedged {
+            wedged.append(header, entry, &mut mesh);
         }
         Ok(())
     }
 
     /// Exchanges what both the decoder and the mesh need.
     fn exchange(&mut self, mesh: &mut Live<'_>) {
-        swap(&mut self.corners, mesh.corners);
-        swap(&mut self.slots, mesh.slots);
+        let corners = match &mut self.wedged {
+            Some(wedged) => wedged.corners_mut(),
+            None => &mut self.corners,
+        };
+        swap(corners, mesh.corners);
         swap(&mut self.parents, mesh.parents);
-        swap(&mut self.face_ends, mesh.face_ends);
     }
 
     /// Appends the positions of a packet; they must be finite (PMESH-POS-04).

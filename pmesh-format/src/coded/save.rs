@@ -50,7 +50,7 @@ impl<'a> Saver<'a> {
     /// The payload of the next packet.
     pub(crate) fn packet(&mut self, extent: &PacketEntry) -> Vec<u8> {
         let mut coder = Writer::default();
-        let mut changes = Changes::default();
+        let mut changes = Changes { recorded: self.known.wedges.is_some(), ..Changes::default() };
         let coded = self.state.packet(&mut coder, &self.known, extent, self.bounds, &mut changes);
         let given = self.known.wedges.as_ref().map(|(_, given)| given);
         let coded = coded.and_then(|()| self.state.attributes(&mut coder, given, extent, &mut changes));

@@ -23,6 +23,7 @@ pub(super) struct Step<'a, S> {
 }
 
 /// Which of the parent's faces switch.
+#[derive(Clone, Copy)]
 enum Moved<'a> {
     /// A bit for each slot, the first in bit 0; of [`MOST`] at most.
     Mask(u32),
@@ -379,22 +380,11 @@ impl State {
     #[inline(always)]
     fn take<S: Source>(&mut self, step: Step<'_, S>, count: usize, moved: Moved<'_>, changes: &mut Changes) {
         let Step { vertex, parent, .. } = step;
-        match (&mut changes.live, &moved) {
-            // Codes stand in descending order of slots (PMESH-SWI-01).
-            (Some(switches), &Moved::Mask(moved)) => {
-                let codes = moved.reverse_bits().unbounded_shr(u32::BITS - count as u32);
-                switches.push(codes.into(), count as u32);
-            }
-            (Some(switches), Moved::Long(chosen)) => {
-                chosen.iter().rev().for_each(|&switch| switches.push(switch.into(), 1));
-            }
-            (None, &Moved::Mask(moved)) => {
-                changes.counts.push(count as u32);
-                changes.masks.push(moved);
-            }
-            (None, Moved::Long(chosen)) => {
-                changes.counts.push(count as u32);
-                changes.long.extend_from_slice(chosen);
+        if changes.recorded {
+            changes.counts.push(count as u32);
+            match moved {
+                Moved::Mask(moved) => changes.masks.push(moved),
+                Moved::Long(chosen) => changes.long.extend_from_slice(chosen),
             }
         }
         match moved {

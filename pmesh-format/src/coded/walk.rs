@@ -95,7 +95,7 @@ impl State {
         self.histories.reserve(extent.vertices.len());
         let splits = extent.vertices.len();
         changes.shapes.reserve(splits);
-        if changes.live.is_none() {
+        if changes.recorded {
             changes.counts.reserve(splits);
             changes.masks.reserve(splits);
             changes.introduced.reserve(extent.faces.len());
@@ -176,7 +176,6 @@ impl State {
         if count > extent.faces.end {
             return Err((codes::CODED_FACES, 0));
         }
-        changes.base_faces = count;
         for k in 0..count as usize {
             let known = faces.get(k).map_or([0; 3], |&(_, corners, _)| corners);
             let corners = known.map(|corner| raw(coder, bits(self.base - 1), corner));
@@ -202,7 +201,7 @@ impl State {
             self.slots.push(corner, slot);
         }
         self.corners.push(corners);
-        if changes.live.is_none() {
+        if changes.recorded {
             changes.introduced.push(corners);
         }
     }

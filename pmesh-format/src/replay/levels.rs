@@ -34,9 +34,12 @@ impl Replay {
     /// the first packet.
     #[must_use]
     pub fn level_of_faces(&self, faces: u32) -> Option<u32> {
-        // Every vertex adds its faces to those before it.
-        let splits = self.face_ends.partition_point(|&end| end <= faces) as u32;
-        self.levels().map(|levels| levels.start().saturating_add(splits).min(*levels.end()))
+        let levels = self.levels()?;
+        let found = match &self.steps {
+            Some(steps) => levels.start().saturating_add(steps.levels_within(faces)).saturating_sub(1),
+            None => self.find_level_of_faces(faces),
+        };
+        Some(found.clamp(*levels.start(), *levels.end()))
     }
 }
 

@@ -31,27 +31,30 @@ fn every_field_lies_where_the_specification_says() {
 #[test]
 fn the_arrays_of_a_packet_follow_each_other_as_the_specification_says() {
     let all = Attributes { normals: true, uvs: true, colours: true, materials: true, seams: true };
-    let counts = PacketCounts { vertices: 5, wedges: 7, faces: 11, splits: 3 };
+    let counts = PacketCounts { vertices: 5, wedges: 7, faces: 11, splits: 3, end_vertex: 9 };
     let layout = PacketLayout::new(counts, all, Positions::F32).unwrap();
     let ours = [
+        ("switch_count", &layout.switch_count),
         ("positions", &layout.positions),
         ("normals", &layout.normals),
         ("uvs", &layout.uvs),
         ("colours", &layout.colours),
         ("corners", &layout.corners),
-        ("parents", &layout.parents),
         ("materials", &layout.materials),
+        ("parents", &layout.parents),
     ];
     let mut start = 0;
     let spec = rows("payload");
-    let arrays = spec.iter().filter(|row| !["variable", "bits"].contains(&row["type"].as_str().unwrap()));
-    assert_eq!(arrays.clone().count(), ours.len());
-    for (row, (name, range)) in arrays.zip(ours) {
-        let count = match row["count"].as_str().unwrap() {
-            "v" => 5,
-            "w" => 7,
-            "f" => 11,
-            "s" => 3,
+    // Lengths of what comes behind the parents do not follow from the directory.
+    assert_eq!(spec[ours.len()]["name"].as_str(), Some("wedge_counts"));
+    for (row, (name, range)) in spec.iter().zip(ours) {
+        let (count, bits) = match row["count"].as_str().unwrap() {
+            "1" => (1, 0),
+            "v" => (5, 0),
+            "w" => (7, 0),
+            "f" => (11, 0),
+            // ⌈log₂ 9⌉
+            "s, b bits each" => (3, 4usize),
             other => panic!("{other}"),
         };
         let bytes = match row["type"].as_str().unwrap() {
@@ -59,18 +62,21 @@ fn the_arrays_of_a_packet_follow_each_other_as_the_specification_says() {
             "f32[2]" => 8,
             "u8[4]" | "u32" => 4,
             "u16" => 2,
+            "packed" => 0,
             other => panic!("{other}"),
         };
-        assert_eq!((row["name"].as_str().unwrap(), range.clone()), (name, start..start + count * bytes));
-        start += count * bytes;
+        let length = count * bytes + (count * bits).div_ceil(8);
+        assert_eq!((row["name"].as_str().unwrap(), range.clone()), (name, start..start + length));
+        start += length;
     }
+    assert_eq!(layout.parent_bits, 4);
     assert_eq!(layout.rest, start);
     // What a file does not have takes no room.
     let none = PacketLayout::new(counts, Attributes::default(), Positions::F32).unwrap();
-    assert_eq!(none.rest, 5 * 12 + 11 * 12 + 3 * 4);
+    assert_eq!(none.rest, 4 + 5 * 12 + 11 * 12 + 2);
     // Quantised positions are four u16.
     let quantised = PacketLayout::new(counts, all, Positions::Quantised(10)).unwrap();
-    assert_eq!((quantised.positions, quantised.rest), (0..5 * 8, layout.rest - 5 * 4));
+    assert_eq!((quantised.positions, quantised.rest), (4..4 + 5 * 8, layout.rest - 5 * 4));
 }
 
 #[test]

@@ -271,8 +271,33 @@ impl Parts {
         self.data_offset() + records.sum::<u64>() + RECORD_HEAD as u64
     }
 
-    /// Where the arrays of a raw packet with positions of 12 bytes begin, in the order of the table in PMESH-PKT-02, and where
-    /// the last of them ends.
+    /// Bits of a parent in packet `k`.
+    pub(crate) fn parent_bits(&self, k: usize) -> usize {
+        let end = u32_at(&self.chunks[0].2, ENTRY * k);
+        (0..).find(|&bits| 1 << bits >= end).unwrap()
+    }
+
+    /// The parents of packet `k`, which brings `count`.
+    pub(crate) fn parents(&self, k: usize, count: usize) -> Vec<u32> {
+        let (at, bits) = (self.arrays(k)[6], self.parent_bits(k));
+        let bit = |n: usize| u32::from(self.packets[k].1[at + n / 8] >> (n % 8) & 1);
+        (0..count).map(|nth| (0..bits).map(|b| bit(nth * bits + b) << b).sum()).collect()
+    }
+
+    /// Gives packet `k` other parents, from the `nth` on, as far as they fit in their bits.
+    pub(crate) fn set_parents(&mut self, k: usize, nth: usize, parents: &[u32]) {
+        let (at, bits) = (self.arrays(k)[6], self.parent_bits(k));
+        for (nth, parent) in (nth..).zip(parents) {
+            for b in 0..bits {
+                let n = nth * bits + b;
+                let byte = &mut self.packets[k].1[at + n / 8];
+                *byte = *byte & !(1 << (n % 8)) | ((parent >> b & 1) as u8) << (n % 8);
+            }
+        }
+    }
+
+    /// Where the arrays of a raw packet with positions of 12 bytes begin, in the order of the table in PMESH-PKT-02 from
+    /// `positions` on, and where the last of them, `parents`, ends.
     pub(crate) fn arrays(&self, k: usize) -> [usize; 8] {
         assert_eq!(self.header[76..78], [1, 1], "raw packets, f32 positions");
         let directory = &self.chunks[0].2;
@@ -283,9 +308,11 @@ impl Parts {
         let s = entry(k, 0) - before(0).max(base);
         let bits = self.header[78];
         let when = |bit: u8, length: usize| if bits >> bit & 1 == 1 { length } else { 0 };
+        let parents = (s * self.parent_bits(k)).div_ceil(8);
         let lengths =
-            [12 * v, when(0, 12 * w), when(1, 8 * w), when(2, 4 * w), 12 * f, 4 * s, when(3, 2 * f)];
-        let mut starts = [0; 8];
+            [12 * v, when(0, 12 * w), when(1, 8 * w), when(2, 4 * w), 12 * f, when(3, 2 * f), parents];
+        // Behind the number of switches.
+        let mut starts = [4; 8];
         for (array, length) in lengths.into_iter().enumerate() {
             starts[array + 1] = starts[array] + length;
         }

@@ -5,9 +5,7 @@ use crate::files::{
     stored, strip, u32_at,
 };
 use ivg_wire::{Code, Error, codes as common};
-use pmesh_format::{
-    Decoder, Event, Header, IndexedMesh, Limits, ProgressiveMesh, Replay, Step, codes, decode_all,
-};
+use pmesh_format::{Decoder, Event, Header, IndexedMesh, Limits, ProgressiveMesh, Replay, Step, codes};
 
 /// Reads a file as a client does, up to the error; the packets that came before it.
 fn read(file: &[u8]) -> (Replay, Error) {
@@ -82,25 +80,35 @@ fn spoiled(k: usize, spoil: impl FnOnce(&mut Vec<u8>, [usize; 8])) -> (Vec<u8>, 
     (right, parts)
 }
 
+/// The file of [`spoiled`] with other parents in packet `k`, from the `nth` on, and the byte in which the first of them begins.
+fn with_parents(k: usize, nth: usize, parents: &[u32]) -> (Vec<u8>, Parts, usize) {
+    let (right, mut bad) = spoiled(k, |_, _| ());
+    bad.set_parents(k, nth, parents);
+    let bits = bad.parent_bits(k);
+    let at = bad.arrays(k)[6];
+    (right, bad, at + nth * bits / 8)
+}
+
 #[test]
 fn a_cycle_in_the_collapse_table_is_refused() {
     // Packets of 4: vertex 3 and 4 to 7, then 8 to 11. A vertex onto itself; two vertices onto each other.
-    for (k, first, parents) in [(1, 4, &[4][..]), (1, 4, &[5, 4]), (2, 8, &[8]), (0, 3, &[3])] {
-        let (right, bad) = spoiled(k, |payload, arrays| put32(payload, arrays[5], parents));
-        assert_eq!(bad.payload_offset(k) % 4, 0);
-        let fault = 4 * parents.iter().zip(first..).position(|(&parent, v)| parent >= v).unwrap();
-        let at = bad.arrays(k)[5] + fault;
+    for (k, parents) in [(1, &[4][..]), (1, &[5, 4]), (2, &[8]), (0, &[3])] {
+        let (right, bad, at) = with_parents(k, 0, parents);
         refused_in_packet(&right, &bad, k as u32, codes::PARENT, at);
     }
+    // The third of packet 2, of four bits each: the second byte.
+    let (right, bad, at) = with_parents(2, 2, &[10]);
+    assert_eq!(at, bad.arrays(2)[6] + 1);
+    refused_in_packet(&right, &bad, 2, codes::PARENT, at);
 }
 
 #[test]
 fn a_forward_reference_in_the_collapse_table_is_refused() {
-    // The second vertex of each packet: onto a later one of the packet, one of the next packet, the last, none at all.
+    // The second vertex of each packet: onto a later one of the packet, one of the next packet, the last, none at all, as far as
+    // there are bits for that.
     for (k, own) in [(1, 5), (2, 9)] {
-        for parent in [own + 1, own + 3, 13, 14, u32::MAX] {
-            let (right, bad) = spoiled(k, |payload, arrays| put32(payload, arrays[5] + 4, &[parent]));
-            let at = bad.arrays(k)[5] + 4;
+        for parent in [own + 1, own + 2, 13, 14, 15] {
+            let (right, bad, at) = with_parents(k, 1, &[parent]);
             refused_in_packet(&right, &bad, k as u32, codes::PARENT, at);
         }
     }
@@ -120,20 +128,31 @@ fn a_face_that_names_a_later_vertex_is_refused() {
 }
 
 #[test]
-fn a_face_of_a_level_before_or_of_no_vertex_of_the_packet_is_refused() {
+fn a_face_with_a_vertex_twice_is_refused() {
     let right = file(&strip(), 1);
-    // Packet 2 brings vertex 4, which collapses onto 3, and the face (2, 3, 4).
-    let cases: [(Code, [u32; 3]); 4] = [
-        (codes::FACE_ORDER, [1, 2, 3]),
-        (codes::FACE_ORDER, [0, 1, 2]),
-        (codes::FACE_LEVEL, [1, 2, 4]),
-        (codes::FACE_VERTICES, [4, 3, 4]),
-    ];
-    for (code, corners) in cases {
+    for corners in [[4, 3, 4], [4, 4, 3], [3, 4, 4], [0, 0, 0]] {
         let mut bad = Parts::of(&right);
         let at = bad.arrays(2)[4];
         put32(&mut bad.packets[2].1, at, &corners);
-        refused_in_packet(&right, &bad, 2, code, at);
+        refused_in_packet(&right, &bad, 2, codes::FACE_VERTICES, at);
+    }
+}
+
+/// A face in the wrong place is no fault: it is there with the face before it, or with the first level of its packet
+/// (PMESH-FACE-05).
+#[test]
+fn a_face_out_of_order_is_there_later_and_levels_stay_valid() {
+    let right = file(&strip(), 1);
+    for corners in [[1, 2, 3], [0, 1, 2], [1, 2, 4]] {
+        let mut bad = Parts::of(&right);
+        let at = bad.arrays(2)[4];
+        put32(&mut bad.packets[2].1, at, &corners);
+        let mut replay = replayed(&bad.build(), 3);
+        assert_eq!(replay.indices()[2], corners);
+        for mesh in levels(&mut replay) {
+            pmesh_format::check_level(&mesh).unwrap();
+            assert_eq!(mesh.triangles.len(), mesh.positions.len() - 2);
+        }
     }
 }
 
@@ -177,30 +196,59 @@ fn wedge_targets_that_the_parent_does_not_have_are_refused() {
     }
 }
 
+/// Packet 1 of the seam ends with low and high bits of slots 2 and 5 of 6.
 #[test]
-fn switch_codes_that_undo_no_collapse_are_refused() {
+fn slots_that_no_wedge_descends_to_are_refused() {
     let right = file(&seam(), 3);
-    // Two codes of two bits, in descending order of slots: to the second wedge, to the first.
-    for codes_of_two in [0b01_01, 0b10_10, 0b11_10, 0b01_11, 0b10_01] {
+    let end = Parts::of(&right).packets[1].1.len();
+    assert_eq!(Parts::of(&right).packets[1].1[end - 2..], [0b10, 0b1010]);
+    // Slots 0, 1, 3, 4 lie on vertices 0 and 1: in place of the first, of the last.
+    for slots in [[0b10, 0b1001], [0b11, 0b1001], [0b11, 0b0101], [0b00, 0b1010]] {
         let mut bad = Parts::of(&right);
-        let at = bad.packets[1].1.len() - 1;
-        assert_eq!(bad.packets[1].1[at], 0b01_10);
-        bad.packets[1].1[at] = codes_of_two;
-        refused_in_packet(&right, &bad, 1, codes::SWITCH, at);
+        bad.packets[1].1[end - 2..].copy_from_slice(&slots);
+        refused_in_packet(&right, &bad, 1, codes::SWITCH, end);
     }
 }
 
 #[test]
-fn switch_codes_that_end_too_early_or_too_late_are_refused() {
+fn lists_of_slots_that_are_none_are_refused() {
+    let right = file(&seam(), 3);
+    let end = Parts::of(&right).packets[1].1.len();
+    for slots in [[0b00, 0b0000], [0b00, 0b0110], [0b01, 0b0110], [0b00, 0b1110], [0b01, 0b1_0010]] {
+        let mut bad = Parts::of(&right);
+        bad.packets[1].1[end - 2..].copy_from_slice(&slots);
+        refused_in_packet(&right, &bad, 1, codes::SWITCH_SLOTS, end - 2);
+    }
+    // More than there are slots of earlier faces; in the first packet there are none.
+    for (k, count) in [(1, 7), (1, u32::MAX), (0, 1)] {
+        let mut bad = Parts::of(&right);
+        put32(&mut bad.packets[k].1, 0, &[count]);
+        refused_in_packet(&right, &bad, k as u32, codes::SWITCH_SLOTS, 0);
+    }
+    // All six of them: two bits less one each, which are there, but not the right ones.
+    let mut bad = Parts::of(&right);
+    put32(&mut bad.packets[1].1, 0, &[6]);
+    refused_in_packet(&right, &bad, 1, codes::SWITCH_SLOTS, end - 2);
+}
+
+#[test]
+fn packets_that_end_too_early_or_too_late_are_refused() {
     let right = file(&random(3, 14, true), 4);
     for k in 0..4 {
         let whole = Parts::of(&right).packets[k].1.clone();
         let end = whole.len();
         let mut bad = Parts::of(&right);
         bad.set_payload(k, [&whole[..], &[0]].concat());
-        refused_in_packet(&right, &bad, k as u32, codes::SWITCH_LENGTH, end);
+        refused_in_packet(&right, &bad, k as u32, codes::PACKET_LENGTH, end);
+        // A part that lacks its last byte is reported where it begins.
         bad.set_payload(k, whole[..end - 1].to_vec());
-        refused_in_packet(&right, &bad, k as u32, codes::SWITCH_LENGTH, end - 1);
+        let file = bad.build();
+        let bad_header = header(&file);
+        let error = replayed(&right, k as u32).apply(&packet(&file, &bad_header, k as u32)).unwrap_err();
+        assert_eq!(error.code(), codes::PACKET_LENGTH.number());
+        let at = (error.offset().0 - bad.payload_offset(k)) as usize;
+        assert!(at < end && at >= bad.arrays(k)[7], "{at} of {end}");
+        refused_in_packet(&right, &bad, k as u32, codes::PACKET_LENGTH, at);
     }
 }
 
@@ -422,13 +470,9 @@ fn a_stream_with_a_record_of_another_file_is_refused() {
 fn what_is_accepted_has_no_cycle() {
     let mesh: ProgressiveMesh = random(9, 40, false);
     let file = file(&mesh, 7);
-    let mut parents = vec![];
-    decode_all(&file, &Limits::default(), |event| {
-        if let Event::Packet(packet) = event {
-            parents.extend(packet.parent_bytes().chunks_exact(4).map(|bytes| u32_at(bytes, 0)));
-        }
-    })
-    .unwrap();
+    let parts = Parts::of(&file);
+    let parents: Vec<u32> =
+        [4, 7, 7, 7, 7, 5].into_iter().enumerate().flat_map(|(k, count)| parts.parents(k, count)).collect();
     assert_eq!(parents, mesh.collapse);
     for (v, &parent) in (3..).zip(&parents) {
         assert!(parent < v);

@@ -68,52 +68,53 @@ fn corners_that_have_met_never_part_again() {
     }
 }
 
-/// PMESH-DEF-05, PMESH-FACE-02, PMESH-FACE-03: faces are stored by the smallest level that has them, with their corners as mapped there.
+/// PMESH-FACE-01, PMESH-FACE-06: faces are stored by the smallest level that has them, with their corners as mapped where the packet
+/// ends that completes it.
 #[test]
-fn faces_are_stored_as_they_are_where_each_is_introduced() {
+fn faces_are_stored_as_they_are_at_the_end_of_their_packet() {
     for packet_size in [1, 4, 100] {
         let mesh = random(5, 30, true);
-        let mut expected = vec![];
-        for level in 3..=30 {
-            let before: Vec<usize> = if level == 3 {
-                vec![]
-            } else {
-                faces(&mesh, level - 1).into_iter().map(|(face, _)| face).collect()
-            };
-            expected.extend(
-                faces(&mesh, level).into_iter().filter(|(face, _)| !before.contains(face)).map(|(_, c)| c),
-            );
-        }
         let file = file(&mesh, packet_size);
         let header = header(&file);
-        let mut stored = vec![];
+        let mut end = 2;
         for k in 0..header.packet_count() {
+            let entry = &header.packets[k as usize];
+            let mut expected = vec![];
+            while end < entry.vertices.end {
+                let before: Vec<usize> = if end < 3 {
+                    vec![]
+                } else {
+                    faces(&mesh, end).into_iter().map(|(face, _)| face).collect()
+                };
+                end += 1;
+                let new =
+                    faces(&mesh, end).into_iter().map(|(face, _)| face).filter(|face| !before.contains(face));
+                expected
+                    .extend(new.map(|face| mesh.faces[face].map(|w| mapped(&mesh, w, entry.vertices.end))));
+            }
             let packet = packet(&file, &header, k);
             let numbers: Vec<u32> = packet
                 .corner_bytes()
                 .chunks_exact(4)
                 .map(|b| u32::from_le_bytes(*b.first_chunk().unwrap()))
                 .collect();
-            // None of its faces is of a level before, and none of one behind.
-            for corners in numbers.chunks_exact(3) {
-                let latest = corners.iter().map(|&w| mesh.wedges.vertices[w as usize]).max().unwrap();
-                assert!(packet.entry().vertices.contains(&latest.max(2)), "packet {k}");
-                stored.push([corners[0], corners[1], corners[2]]);
-            }
+            assert_eq!(numbers, expected.concat(), "packet {k}");
         }
-        assert_eq!(stored, expected);
     }
 }
 
-/// PMESH-SWI-01: the codes of a vertex are those of its parent's slots, the last slot first.
+/// PMESH-SWI-04 to -06, read from the bytes: a packet names the corners of earlier faces that it changes, and what they become.
 #[test]
-fn slots_are_in_descending_order() {
-    // Vertex 3 arrives at vertex 2, on which corners 2 of faces 0 and 1 lie: slots 5 and 2. Codes of two bits.
+fn a_packet_switches_the_corners_that_change() {
+    // Slots 2 and 5 lie on wedges 2 and 3 of vertex 2, and switch to those that become these.
     let mut mesh = seam();
-    let code = |mesh: &ProgressiveMesh| *crate::files::Parts::of(&file(mesh, 4)).packets[0].1.last().unwrap();
-    assert_eq!(code(&mesh), 0b01_10, "slot 5 to the second wedge, then slot 2 to the first");
+    let payload = |mesh: &ProgressiveMesh| crate::files::Parts::of(&file(mesh, 3)).packets[1].1.clone();
+    let whole = payload(&mesh);
+    assert_eq!((whole[0], &whole[whole.len() - 2..]), (2, &[0b10, 0b1010][..]));
     mesh.faces[1] = [1, 0, 3];
-    assert_eq!(code(&mesh), 0b01_00, "slot 5 stays");
+    // Slot 2 alone: a low bit, 0, then a one in place 1 of three.
+    let whole = payload(&mesh);
+    assert_eq!((whole[0], &whole[whole.len() - 2..]), (1, &[0, 0b010][..]));
 }
 
 /// PMESH-DIR-06, and the error of each level in between.

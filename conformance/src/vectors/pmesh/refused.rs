@@ -256,26 +256,10 @@ fn topology(file: &[u8], one_packet: &[u8]) -> Vec<Refused> {
         (o, "corner-later", mesh::CORNER, corner(1, 0, own), "a face that names a wedge of the next packet"),
         (
             o,
-            "face-before",
-            mesh::FACE_ORDER,
-            in_packet(file, last, corners(last), &[0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]),
-            "a face that the first packet should have brought",
-        ),
-        (
-            o,
             "face-twice",
             mesh::FACE_VERTICES,
             same_corners(file, last, corners(last)),
             "a face with one vertex twice",
-        ),
-        // The last vertex collapses onto vertex 1, which is then no corner of the face.
-        (o, "face-level", mesh::FACE_LEVEL, corner(last, 0, 2), "a face that exists before its last vertex"),
-        (
-            ONE_PACKET,
-            "face-order",
-            mesh::FACE_ORDER,
-            first_face_last(one_packet),
-            "the faces in another order",
         ),
     ]
 }
@@ -285,16 +269,6 @@ fn same_corners(file: &[u8], k: u32, corners: usize) -> Vec<u8> {
     let start = packet(file, k).start + RECORD_HEAD + corners;
     let first: [u8; 4] = *file[start..].first_chunk().expect("a corner");
     in_packet(file, k, corners + 4, &first)
-}
-
-/// Exchanges the first and the last face of a file of one packet with six vertices, texture coordinates and colours.
-fn first_face_last(file: &[u8]) -> Vec<u8> {
-    let (corners, face) = (6 * (12 + 8 + 4), 12);
-    let last = corners + 7 * face;
-    let start = packet(file, 0).start + RECORD_HEAD;
-    let bytes = |at: usize| &file[start + at..][..face];
-    let once = in_packet(file, 0, corners, bytes(last));
-    in_packet(&once, 0, last, bytes(corners))
 }
 
 /// Where the numbers of variable length of a packet of the folded strip begin: behind positions, normals, corners, parents and
@@ -330,7 +304,7 @@ fn wedges(file: &[u8]) -> Vec<Refused> {
         (
             SEAM,
             "varint-cut",
-            mesh::SWITCH_LENGTH,
+            mesh::PACKET_LENGTH,
             instead(&[1, 2]),
             "a payload that ends before the last number of wedges",
         ),
@@ -369,7 +343,7 @@ fn switches(file: &[u8], seam: &[u8]) -> Vec<Refused> {
     let codes = varints(seam, 2) + 3;
     let code = |bits: u8| in_packet(seam, 2, codes, &[bits]);
     vec![
-        (OCTAHEDRON, "switch-padding", mesh::SWITCH_PADDING, padding, "a bit behind the last switch code"),
+        (OCTAHEDRON, "switch-padding", mesh::PACKET_PADDING, padding, "a bit behind the last switch code"),
         (SEAM, "switch-high", mesh::SWITCH, code(0b01_11), "a switch code above the number of wedges"),
         (
             SEAM,
@@ -381,14 +355,14 @@ fn switches(file: &[u8], seam: &[u8]) -> Vec<Refused> {
         (
             OCTAHEDRON,
             "switch-long",
-            mesh::SWITCH_LENGTH,
+            mesh::PACKET_LENGTH,
             with_payload(file, last, &[&payload(file, last)[..], &[0; 4]].concat()),
             "bytes behind the switch codes",
         ),
         (
             OCTAHEDRON,
             "switch-short",
-            mesh::SWITCH_LENGTH,
+            mesh::PACKET_LENGTH,
             with_payload(file, last, &payload(file, last)[..end - 1]),
             "a payload that ends before the switch codes",
         ),

@@ -1,6 +1,8 @@
-//! What a packet has brought as the arrays of a raw one, and its withdrawal.
+//! What a packet has brought, for the mesh that it is read into, and its withdrawal.
 
 use super::*;
+use crate::coded::Live;
+use crate::room::reserve;
 
 impl Wedged {
     /// Takes back what a packet that begins so has changed, the models excepted; the splits are still in `state`.
@@ -43,47 +45,41 @@ impl Wedged {
         }
     }
 
-    /// Values of the wedges of a packet as a raw one has them (PMESH-PKT-02).
-    pub(in crate::coded) fn raw_values(&self, extent: &PacketEntry, out: &mut Vec<u8>) {
+    /// Wedges of the corners of the faces.
+    pub(in crate::coded) fn corners_mut(&mut self) -> &mut Vec<[u32; 3]> {
+        &mut self.corners
+    }
+
+    /// Appends to `mesh` what a packet has brought, but for positions, corners and parents.
+    pub(in crate::coded) fn append(&self, header: &Header, extent: &PacketEntry, mesh: &mut Live<'_>) {
         let wedges = extent.wedges.start as usize..extent.wedges.end as usize;
-        let Attributes { normals, uvs, colours, .. } = self.plan.attributes;
+        let total = header.wedge_count as usize;
+        let Attributes { normals, uvs, colours, materials, seams } = self.plan.attributes;
         if normals {
-            for &code in &self.normals[wedges.clone()] {
-                out.extend(self.plan.normal(code).into_iter().flat_map(f32::to_le_bytes));
-            }
+            reserve(mesh.normals, wedges.len(), total);
+            mesh.normals.extend(self.normals[wedges.clone()].iter().map(|&code| self.plan.normal(code)));
         }
         if uvs {
-            for &point in &self.uvs[wedges.clone()] {
-                out.extend(self.plan.uv(point).into_iter().flat_map(f32::to_le_bytes));
-            }
+            reserve(mesh.uvs, wedges.len(), total);
+            mesh.uvs.extend(self.uvs[wedges.clone()].iter().map(|&point| self.plan.uv(point)));
         }
         if colours {
-            out.extend_from_slice(self.colours[wedges].as_flattened());
+            reserve(mesh.colours, wedges.len(), total);
+            mesh.colours.extend_from_slice(&self.colours[wedges.clone()]);
         }
-    }
-
-    /// Materials, wedge counts and wedge targets of a packet as a raw one has them.
-    pub(in crate::coded) fn raw_tables(&self, extent: &PacketEntry, state: &State, out: &mut Vec<u8>) {
-        let Attributes { materials, seams, .. } = self.plan.attributes;
         if materials {
-            let faces = extent.faces.start as usize..extent.faces.end as usize;
-            out.extend(self.materials[faces].iter().flat_map(|material| material.to_le_bytes()));
+            reserve(mesh.materials, extent.faces.len(), header.face_count as usize);
+            mesh.materials.extend_from_slice(&self.materials[extent.faces.start as usize..]);
         }
         if seams {
-            for vertex in extent.vertices.clone() {
-                write_varint(out, self.wedges_of(vertex).len() as u32);
-            }
-            for vertex in extent.vertices.start.max(state.base)..extent.vertices.end {
-                let first = self.wedges_of(state.parents[(vertex - state.base) as usize]).start;
-                for wedge in self.wedges_of(vertex) {
-                    write_varint(out, self.targets[wedge as usize] - first);
-                }
-            }
+            reserve(mesh.wedge_ends, extent.vertices.len(), header.vertex_count as usize);
+            mesh.wedge_ends.extend_from_slice(&self.ends[extent.vertices.start as usize..]);
+            reserve(mesh.wedge_vertices, wedges.len(), total);
+            mesh.wedge_vertices.extend_from_slice(&self.vertices[wedges.clone()]);
+            let first = header.base_vertices.max(extent.vertices.start);
+            let first = self.ends[first as usize - 1].max(extent.wedges.start) as usize;
+            reserve(mesh.wedge_targets, wedges.end - first, total);
+            mesh.wedge_targets.extend_from_slice(&self.targets[first..]);
         }
-    }
-
-    /// Switch codes of a packet with seams, as a raw one has them.
-    pub(in crate::coded) fn raw_switches(&self, brought: &Brought) -> Option<Vec<u8>> {
-        self.plan.attributes.seams.then(|| brought.switches.to_bytes())
     }
 }
