@@ -6,8 +6,8 @@
 //! - [`oracles`] says what must hold for any bytes whatever: the bodies of the fuzz targets, which the tests here call with
 //!   all vectors and seeds.
 //! - [`mod@reference`] is a second reader of `.pmesh` packets, written from the specification alone, with which the first is compared.
-//! - [`bounds`] asserts how much a reader may allocate; [`choices`] turns bytes into things to encode, and [`surfaces`] grows
-//!   meshes.
+//! - [`bounds`] asserts how much a reader may allocate; [`choices`] turns bytes into things to encode, [`surfaces`] grows
+//!   meshes, and [`mod@invented`] makes packets that no writer would.
 //!
 //! ```
 //! use conformance::vectors::vectors;
@@ -21,6 +21,7 @@
 
 pub mod bounds;
 pub mod choices;
+pub mod invented;
 pub mod oracles;
 pub mod reference;
 pub mod surfaces;

@@ -5,6 +5,7 @@ pub mod ivg;
 mod ivg_roundtrip;
 pub mod pmesh;
 mod pmesh_lod;
+mod pmesh_packets;
 mod pmesh_roundtrip;
 pub mod stream;
 
@@ -12,6 +13,7 @@ pub use ivg::{ivg_chunks, ivg_decode};
 pub use ivg_roundtrip::ivg_roundtrip;
 pub use pmesh::{pmesh_chunks, pmesh_decode};
 pub use pmesh_lod::pmesh_lod;
+pub use pmesh_packets::pmesh_packets;
 pub use pmesh_roundtrip::pmesh_roundtrip;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -20,13 +22,14 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 pub type Oracle = fn(&[u8]);
 
 /// Every oracle here under the name of its fuzz target, which begins with the name of its format.
-pub const ORACLES: [(&str, Oracle); 7] = [
+pub const ORACLES: [(&str, Oracle); 8] = [
     ("ivg_decode", ivg_decode),
     ("ivg_chunks", ivg_chunks),
     ("ivg_roundtrip", ivg_roundtrip),
     ("pmesh_decode", pmesh_decode),
     ("pmesh_chunks", pmesh_chunks),
     ("pmesh_lod", pmesh_lod),
+    ("pmesh_packets", pmesh_packets),
     ("pmesh_roundtrip", pmesh_roundtrip),
 ];
 

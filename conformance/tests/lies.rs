@@ -1,6 +1,6 @@
 //! Every packet of every accepted `.pmesh` vector with every byte changed, its checksum put right: what a fuzzer would find first.
 
-use conformance::oracles::{pmesh_decode, pmesh_lod};
+use conformance::oracles::{pmesh_decode, pmesh_lod, pmesh_packets};
 use conformance::vectors::edit::in_envelope;
 use conformance::vectors::{Format, Vector, vectors};
 use ivg_wire::splitmix64;
@@ -56,5 +56,14 @@ fn both_readers_show_the_same_levels_of_changed_files() {
             let byte = vector.bytes[at] ^ (1 << choose(3, 8));
             pmesh_lod(&in_envelope(&vector.bytes, record, at, &[byte]));
         }
+    }
+}
+
+/// Packets that no writer would make, right and with a changed byte.
+#[test]
+fn both_readers_agree_on_packets_that_nobody_writes() {
+    for seed in 0..400 {
+        let data: Vec<u8> = (0..200).flat_map(|n| splitmix64(seed, n).to_le_bytes()).collect();
+        pmesh_packets(&data);
     }
 }

@@ -8,6 +8,8 @@ use std::ops::Range;
 mod refused;
 mod refused_coded;
 mod refused_frame;
+mod refused_packets;
+mod refused_switches;
 mod variants;
 
 /// Places of fields in the header (`spec/tables/pmesh.toml`).
@@ -144,7 +146,7 @@ fn accepted() -> Vec<Vector> {
         (
             SEAM,
             file(&seam(), 1),
-            "two wedges at the vertices of an edge, materials with names, switch codes of two bits",
+            "two wedges at the vertices of an edge, materials with names, a corner that switches on either side",
         ),
         ("0006-points", file(&points(), 3), "vertices without a face"),
         (

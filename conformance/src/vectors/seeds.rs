@@ -24,7 +24,7 @@ pub(super) fn seeds(vectors: &[Vector]) -> Vec<(PathBuf, Vec<u8>)> {
             seeds.push((PathBuf::from(target).join(&vector.name), vector.bytes.clone()));
         }
     }
-    for (seed, target) in (0..).zip(["ivg_roundtrip", "pmesh_roundtrip", "mesh_build"]) {
+    for (seed, target) in (0..).zip(["ivg_roundtrip", "pmesh_roundtrip", "mesh_build", "pmesh_packets"]) {
         for length in CHOICE_LENGTHS {
             seeds.push((PathBuf::from(target).join(format!("choices-{length}")), choices(seed, length)));
         }

@@ -1,13 +1,18 @@
 //! Files of `.pmesh` to refuse.
 
 use super::super::edit::{in_envelope, in_header, last_chunk, replaced, with_chunk};
+use super::super::parts::Parts;
 use super::super::{Format, Refused, Vector};
 use super::refused_frame as frame;
+use super::refused_packets as packets;
 use super::{
     CHUNK_HEAD, EMPTY, EQUAL_PACKETS, OCTAHEDRON, ONE_PACKET, RECORD_HEAD, SEAM, at, entry, header, packet,
 };
 use ivg_wire::codes as wire;
 use pmesh_format::codes as mesh;
+
+/// Where the arrays of a packet begin: behind the number of slots that switch.
+const ARRAYS: usize = 4;
 
 pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     let twin = |name: &str| &accepted.iter().find(|vector| vector.name == name).expect("a name").bytes[..];
@@ -20,9 +25,11 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     list.extend(names(twin(SEAM)));
     list.extend(points(twin("0022-raw-q12"), twin("0027-raw-q12-plane")));
     list.extend(numbers(octahedron, twin(SEAM), twin(ONE_PACKET)));
-    list.extend(topology(octahedron, twin(ONE_PACKET)));
-    list.extend(wedges(twin(SEAM)));
-    list.extend(switches(octahedron, twin(SEAM)));
+    list.extend(packets::collapses(octahedron, twin(ONE_PACKET)));
+    list.extend(packets::faces(octahedron, twin(SEAM)));
+    list.extend(packets::wedges(twin(SEAM)));
+    list.extend(super::refused_switches::refused(&twin));
+    list.extend(least_bytes(&twin));
     list.extend(super::refused_coded::refused(twin));
     list.into_iter().map(|refused| Vector::refused(Format::Pmesh, refused)).collect()
 }
@@ -144,7 +151,7 @@ fn names(file: &[u8]) -> Vec<Refused> {
 }
 
 /// An edit in the payload of a packet.
-fn in_packet(file: &[u8], k: u32, at: usize, bytes: &[u8]) -> Vec<u8> {
+pub(super) fn in_packet(file: &[u8], k: u32, at: usize, bytes: &[u8]) -> Vec<u8> {
     let record = packet(file, k);
     in_envelope(file, record.clone(), record.start + RECORD_HEAD + at, bytes)
 }
@@ -171,9 +178,9 @@ pub(super) fn payload(file: &[u8], k: u32) -> Vec<u8> {
 }
 
 fn numbers(file: &[u8], seam: &[u8], coloured: &[u8]) -> Vec<Refused> {
-    let position = |value: f32| in_packet(file, 0, 12, &value.to_le_bytes());
+    let position = |value: f32| in_packet(file, 0, ARRAYS + 12, &value.to_le_bytes());
     // Behind the positions of three vertices.
-    let normal = |value: f32| in_packet(seam, 0, 3 * 12, &value.to_le_bytes());
+    let normal = |value: f32| in_packet(seam, 0, ARRAYS + 3 * 12, &value.to_le_bytes());
     vec![
         (OCTAHEDRON, "position-nan", mesh::POSITION, position(f32::NAN), "a position that is no number"),
         (OCTAHEDRON, "position-outside", mesh::POSITION, position(1.5), "a position outside the bounds"),
@@ -183,7 +190,7 @@ fn numbers(file: &[u8], seam: &[u8], coloured: &[u8]) -> Vec<Refused> {
             ONE_PACKET,
             "uv-infinite",
             mesh::ATTRIBUTE,
-            in_packet(coloured, 0, 6 * 12 + 4, &f32::INFINITY.to_le_bytes()),
+            in_packet(coloured, 0, ARRAYS + 6 * 12 + 4, &f32::INFINITY.to_le_bytes()),
             "texture coordinates at infinity",
         ),
     ]
@@ -192,7 +199,7 @@ fn numbers(file: &[u8], seam: &[u8], coloured: &[u8]) -> Vec<Refused> {
 /// Points of a lattice: four u16 each.
 fn points(file: &[u8], plane: &[u8]) -> Vec<Refused> {
     let number = |file: &[u8], point: usize, at: usize, value: u16| {
-        in_packet(file, 0, 8 * point + 2 * at, &value.to_le_bytes())
+        in_packet(file, 0, ARRAYS + 8 * point + 2 * at, &value.to_le_bytes())
     };
     let longest = {
         let [low, high] = header(file).bounds;
@@ -224,147 +231,41 @@ fn points(file: &[u8], plane: &[u8]) -> Vec<Refused> {
     ]
 }
 
-fn topology(file: &[u8], one_packet: &[u8]) -> Vec<Refused> {
-    let o = OCTAHEDRON;
-    let header = header(file);
-    // Of the packet: positions, corners of its faces, parents; the file has no attributes.
-    let last = header.packet_count() - 1;
-    let counts = |k: u32| (header.packets[k as usize].vertices.len(), header.packets[k as usize].faces.len());
-    let corners = |k: u32| counts(k).0 * 12;
-    let parents = |k: u32| corners(k) + counts(k).1 * 12;
-    let corner = |k: u32, n: usize, wedge: u32| in_packet(file, k, corners(k) + n * 4, &wedge.to_le_bytes());
-    let parent = |k: u32, vertex: u32| in_packet(file, k, parents(k), &vertex.to_le_bytes());
-    let own = header.packets[last as usize].vertices.start;
+/// The least that a packet must have (PMESH-DIR-04), by hand: the number of slots that switch, arrays, parents.
+fn least_bytes<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
+    // Of packet 1 of each file. The octahedron: two vertices, four faces, parents of three bits.
+    let octahedron = 4 + 2 * 12 + 4 * 12 + 1;
+    // A vertex of one wedge with a normal, a face with a material, a parent of two bits.
+    let seam = 4 + (12 + 12) + (12 + 2) + 1;
+    let few = |name: &'static str, mistake, least: u32, why| {
+        let file = in_directory(twin(name), 1, entry::PAYLOAD_BYTES, least - 1);
+        (name, mistake, mesh::DIRECTORY_BYTES, file, why)
+    };
+    let enough = |name: &'static str, mistake, least: u32, why| {
+        let whole = payload(twin(name), 1);
+        let file = with_payload(twin(name), 1, &whole[..least as usize]);
+        (name, mistake, mesh::PACKET_LENGTH, file, why)
+    };
+    let (quantised, all) = ("0022-raw-q12", "0029-raw-q14-attributes");
     vec![
-        (o, "parent-itself", mesh::PARENT, parent(last, own), "a vertex that collapses onto itself"),
-        (
-            o,
-            "parent-later",
-            mesh::PARENT,
-            parent(1, own),
-            "a vertex that collapses onto one that has not arrived",
-        ),
-        (
-            ONE_PACKET,
-            "parents-cycle",
-            mesh::PARENT,
-            // Behind positions, texture coordinates, colours and eight faces: two vertices that collapse onto each other.
-            in_packet(one_packet, 0, 6 * (12 + 8 + 4) + 8 * 12, &[4, 0, 0, 0, 3, 0, 0, 0]),
-            "two vertices that collapse onto each other",
-        ),
-        (o, "corner", mesh::CORNER, corner(1, 0, u32::MAX), "a face that names a wedge that does not exist"),
-        (o, "corner-later", mesh::CORNER, corner(1, 0, own), "a face that names a wedge of the next packet"),
-        (
-            o,
-            "face-twice",
-            mesh::FACE_VERTICES,
-            same_corners(file, last, corners(last)),
-            "a face with one vertex twice",
+        few(OCTAHEDRON, "entry-bytes-floats", octahedron, "a byte too few for parents behind floats"),
+        enough(OCTAHEDRON, "packet-least", octahedron, "as long as the directory must say, and no longer"),
+        few(SEAM, "entry-bytes-seams", seam, "a byte too few for parents behind materials"),
+        enough(SEAM, "packet-least-seams", seam, "no number of wedges, which the directory allows"),
+        few(quantised, "entry-bytes-points", least(twin(quantised), 1), "a byte too few behind points"),
+        few(all, "entry-bytes-all", least(twin(all), 1), "a byte too few behind arrays of every kind"),
+        enough(
+            all,
+            "packet-least-all",
+            least(twin(all), 1),
+            "arrays of every kind, and nothing behind parents",
         ),
     ]
 }
 
-/// The second corner of the first face of a packet is the first one again.
-fn same_corners(file: &[u8], k: u32, corners: usize) -> Vec<u8> {
-    let start = packet(file, k).start + RECORD_HEAD + corners;
-    let first: [u8; 4] = *file[start..].first_chunk().expect("a corner");
-    in_packet(file, k, corners + 4, &first)
-}
-
-/// Where the numbers of variable length of a packet of the folded strip begin: behind positions, normals, corners, parents and
-/// materials.
-fn varints(file: &[u8], k: u32) -> usize {
-    let header = header(file);
-    let entry = &header.packets[k as usize];
-    let splits = entry.vertices.end - entry.vertices.start.max(header.base_vertices);
-    12 * (entry.vertices.len() + entry.wedges.len()) + (12 + 2) * entry.faces.len() + 4 * splits as usize
-}
-
-fn wedges(file: &[u8]) -> Vec<Refused> {
-    // The first packet has vertices of one, two and two wedges; the last has one vertex of two, and where these go.
-    let count = varints(file, 0);
-    let target = varints(file, 2) + 1;
-    let first = payload(file, 0);
-    let instead = |bytes: &[u8]| with_payload(file, 0, &[&first[..count], bytes].concat());
-    vec![
-        (
-            SEAM,
-            "wedges-few",
-            mesh::WEDGE_COUNT,
-            in_packet(file, 0, count + 2, &[1]),
-            "fewer wedges than the packet has",
-        ),
-        (
-            SEAM,
-            "varint-33-bits",
-            mesh::VARINT,
-            instead(&[0x81, 0x80, 0x80, 0x80, 0x10]),
-            "a number of 33 bits",
-        ),
-        (
-            SEAM,
-            "varint-cut",
-            mesh::PACKET_LENGTH,
-            instead(&[1, 2]),
-            "a payload that ends before the last number of wedges",
-        ),
-        (
-            SEAM,
-            "wedges-many",
-            mesh::WEDGE_COUNT,
-            in_packet(file, 0, count, &[2]),
-            "more wedges than the packet has",
-        ),
-        (SEAM, "wedges-0", mesh::WEDGE_COUNT, in_packet(file, 0, count, &[0]), "a vertex without a wedge"),
-        (
-            SEAM,
-            "varint",
-            mesh::VARINT,
-            in_packet(file, 2, target, &[0x80, 0x00]),
-            "a number longer than it needs to be",
-        ),
-        (
-            SEAM,
-            "wedge-target",
-            mesh::WEDGE_TARGET,
-            in_packet(file, 2, target, &[2]),
-            "a wedge that the parent does not have",
-        ),
-    ]
-}
-
-fn switches(file: &[u8], seam: &[u8]) -> Vec<Refused> {
-    let header = header(file);
-    let last = header.packet_count() - 1;
-    let end = header.packets[last as usize].payload_bytes as usize;
-    let byte = file[packet(file, last).start + RECORD_HEAD + end - 1];
-    let padding = in_packet(file, last, end - 1, &[byte | 0x80]);
-    // Two codes of two bits: to wedge 2 on the wall, to wedge 1 on the floor.
-    let codes = varints(seam, 2) + 3;
-    let code = |bits: u8| in_packet(seam, 2, codes, &[bits]);
-    vec![
-        (OCTAHEDRON, "switch-padding", mesh::PACKET_PADDING, padding, "a bit behind the last switch code"),
-        (SEAM, "switch-high", mesh::SWITCH, code(0b01_11), "a switch code above the number of wedges"),
-        (
-            SEAM,
-            "switch-crossed",
-            mesh::SWITCH,
-            code(0b10_01),
-            "the floor switches to the wall's wedge and the wall to the floor's",
-        ),
-        (
-            OCTAHEDRON,
-            "switch-long",
-            mesh::PACKET_LENGTH,
-            with_payload(file, last, &[&payload(file, last)[..], &[0; 4]].concat()),
-            "bytes behind the switch codes",
-        ),
-        (
-            OCTAHEDRON,
-            "switch-short",
-            mesh::PACKET_LENGTH,
-            with_payload(file, last, &payload(file, last)[..end - 1]),
-            "a payload that ends before the switch codes",
-        ),
-    ]
+/// Where `wedge_counts` begins.
+fn least(file: &[u8], k: u32) -> u32 {
+    let parts = Parts::read(&header(file), k, &payload(file, k));
+    let parts = Parts { wedge_counts: Vec::new(), wedge_targets: Vec::new(), ..parts };
+    parts.before_slots().len() as u32
 }

@@ -1,12 +1,16 @@
 //! Accepted files of every mode and every encoding of positions, of meshes that are surfaces and of some that are not.
 
 use super::super::{Format, Vector};
+use super::refused_packets::lie;
 use crate::surfaces::{Kind, surface};
 use ivg_wire::splitmix64;
 use pmesh_format::{EncodeOptions, Mode, PacketSize, Positions, ProgressiveMesh, Wedges, encode};
 
 /// Packets that grow as those of large meshes do, but begin small.
 const GROWING: PacketSize = PacketSize::Growing { first: 6, percent: 30, most: 100 };
+
+/// A packet for a base of three vertices and one for all others.
+const BASE_AND_REST: PacketSize = PacketSize::Growing { first: 3, percent: 5000, most: 100 };
 
 /// A name, a mesh, how it is stored, what it shows.
 type Variant = (&'static str, ProgressiveMesh, EncodeOptions, &'static str);
@@ -221,6 +225,12 @@ fn coded() -> Vec<Variant> {
             "a vertex with very many faces: the packet is as long as the work that it makes",
         ),
     ]);
+    variants.push((
+        "0055-coded-deep",
+        chain(100),
+        coded(Positions::Quantised(10), PacketSize::Fixed(100)),
+        "a chain of vertices, each onto the one before, in one packet; more than raw packets may have of it",
+    ));
     variants.extend(coded_attributes());
     variants
 }
@@ -261,12 +271,112 @@ fn coded_attributes() -> Vec<Variant> {
     ]
 }
 
+/// A vertex from which three descend in one packet: a corner becomes the second of them, another the only one of its own.
+pub(super) const DESCENDANTS: &str = "0016-raw-descendants";
+/// Corners that pass as many vertices inside one packet as its bytes allow.
+pub(super) const DEEP: &str = "0018-raw-deep";
+
+/// A triangle, and vertices that collapse onto these; all errors are alike.
+fn split(collapse: &[u32], faces: &[[u32; 3]]) -> ProgressiveMesh {
+    let vertices = 3 + collapse.len() as u32;
+    ProgressiveMesh {
+        positions: (0..vertices).map(|v| [v as f32, (v * v % 7) as f32, (v % 3) as f32]).collect(),
+        wedges: Wedges { vertices: (0..vertices).collect(), ..Wedges::default() },
+        base_vertices: 3,
+        collapse: collapse.to_vec(),
+        wedge_collapse: collapse.to_vec(),
+        errors: vec![0.5; collapse.len()],
+        faces: faces.to_vec(),
+        ..ProgressiveMesh::default()
+    }
+}
+
+/// A fan whose vertices each collapse onto the one before.
+fn chain(vertices: u32) -> ProgressiveMesh {
+    let collapse: Vec<u32> = (2..vertices - 1).collect();
+    let faces: Vec<[u32; 3]> = (2..vertices).map(|v| [0, v - 1, v]).collect();
+    split(&collapse, &faces)
+}
+
+fn one_vertex() -> ProgressiveMesh {
+    ProgressiveMesh {
+        positions: vec![[1.0, 2.0, 3.0]],
+        wedges: Wedges { vertices: vec![0], ..Wedges::default() },
+        base_vertices: 1,
+        ..ProgressiveMesh::default()
+    }
+}
+
+fn raw_packets() -> Vec<Variant> {
+    let raw = |vertices| options(Mode::Raw, Positions::F32, PacketSize::Fixed(vertices));
+    vec![
+        ("0014-raw-one-vertex", one_vertex(), raw(1), "one vertex: no parent, and no bits for any"),
+        (
+            "0015-raw-all-switch",
+            split(&[0, 1, 2], &[[3, 4, 5]]),
+            raw(3),
+            "every corner of an earlier face switches in one packet",
+        ),
+        (
+            DESCENDANTS,
+            split(&[0, 3, 0, 1], &[[4, 6, 2], [0, 3, 6]]),
+            options(Mode::Raw, Positions::F32, BASE_AND_REST),
+            "three vertices that descend from one, and one that descends from another",
+        ),
+        (
+            "0019-raw-apart",
+            split(&[0, 1, 1], &[[0, 1, 2], [1, 2, 5]]),
+            raw(1),
+            "packets of a vertex without a face, in which nothing switches",
+        ),
+    ]
+}
+
+/// Vertices of [`DEEP`] that each collapse onto the one before, and faces of these.
+const CHAIN: (u32, usize) = (60, 76);
+
+/// A chain of vertices, each onto the one before, with corners near its end; what it has too much is taken off the last face.
+fn deep() -> Vec<u8> {
+    let (chain, faces) = CHAIN;
+    let collapse: Vec<u32> = (2..2 + chain).collect();
+    let shallow = [&[[0, 1, 2 + chain]][..], &vec![[0, 3, 4]; faces]].concat();
+    let options = options(Mode::Raw, Positions::F32, BASE_AND_REST);
+    let file = encode(&split(&collapse, &shallow), &options).expect("shallow corners");
+    let end = 2 + chain;
+    lie(&file, 1, |parts| {
+        parts.corners = vec![[end, end - 1, end - 2]; faces];
+        // Vertex v has the depth v - 2. The corner of the base that switches has that of the last vertex.
+        let depth = |corner: &u32| corner - 2;
+        let sum: u32 = parts.corners.as_flattened().iter().map(depth).sum::<u32>() + chain;
+        let allowed = 8 * parts.payload().len() as u32;
+        parts.corners[faces - 1][2] -= sum - allowed;
+    })
+}
+
+/// Faces in another order than that of the levels that introduce them: PMESH-FACE-05 says when they are there.
+fn out_of_order() -> Vec<u8> {
+    let options = options(Mode::Raw, Positions::F32, PacketSize::Fixed(10));
+    let file = encode(&bordered(20), &options).expect("a sound mesh");
+    lie(&file, 1, |parts| parts.corners.reverse())
+}
+
+fn by_hand() -> Vec<Vector> {
+    let list = [
+        ("0017-raw-out-of-order", out_of_order(), "faces that are not sorted by their level of introduction"),
+        (DEEP, deep(), "corners that pass as many vertices as the bytes of their packet allow"),
+    ];
+    list.into_iter().map(|(name, file, why)| Vector::accepted(Format::Pmesh, name, file, why)).collect()
+}
+
 pub(super) fn accepted() -> Vec<Vector> {
-    let variants = raw().into_iter().chain(raw_quantised()).chain(coded());
-    variants
+    let variants = raw().into_iter().chain(raw_packets()).chain(raw_quantised()).chain(coded());
+    let mut vectors: Vec<Vector> = variants
         .map(|(name, mesh, options, why)| {
             let file = encode(&mesh, &options).unwrap_or_else(|error| panic!("{name}: {error}"));
             Vector::accepted(Format::Pmesh, name, file, why)
         })
-        .collect()
+        .collect();
+    vectors.extend(by_hand());
+    vectors.sort_by(|a, b| a.name.cmp(&b.name));
+    vectors
 }
