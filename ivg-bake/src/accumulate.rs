@@ -8,6 +8,7 @@
 //! 2²² · 2⁴⁰ = 2⁶² in size and i64 never overflows. Integer addition commutes: any number of threads, any order and any split gives the same sums.
 
 use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// The largest size of one number of a deposit, in quanta.
 pub(crate) const MAX_QUANTA: f32 = 4_194_304.0;
@@ -53,15 +54,16 @@ impl Sums for Shared<'_> {
     }
 }
 
-/// All sums of a bake, kept once a thread or once for all.
+/// All sums of a bake, kept once a thread or once for all. They stay where they are between stretches of work, so that they
+/// can be read there.
 #[derive(Debug)]
 pub(crate) enum Store {
-    /// One set for each thread while it works, added up here.
+    /// A set for each thread that ever worked at the same time as others.
     Private {
         /// Numbers in a set.
         len: usize,
-        /// The total.
-        total: std::sync::Mutex<Vec<i64>>,
+        /// Sets that no thread works with at the moment.
+        sets: Mutex<Vec<Private>>,
     },
     /// One set for all.
     Shared(Vec<AtomicI64>),
@@ -71,7 +73,7 @@ impl Store {
     /// `len` sums for `threads` threads.
     pub(crate) fn new(len: usize, threads: usize) -> Self {
         if len.saturating_mul(size_of::<i64>()).saturating_mul(threads) <= PRIVATE_BYTES {
-            Self::Private { len, total: std::sync::Mutex::new(vec![0; len]) }
+            Self::Private { len, sets: Mutex::default() }
         } else {
             Self::shared(len)
         }
@@ -82,9 +84,14 @@ impl Store {
         Self::Shared((0..len).map(|_| AtomicI64::new(0)).collect())
     }
 
-    /// An empty set for one thread.
-    pub(crate) fn private(len: usize) -> Private {
-        Private(vec![0; len])
+    /// A set of `len` sums for one thread: one of the `sets`, or an empty one.
+    pub(crate) fn take(sets: &Mutex<Vec<Private>>, len: usize) -> Private {
+        lock(sets).pop().unwrap_or_else(|| Private(vec![0; len]))
+    }
+
+    /// Puts a set back that [`Store::take`] gave.
+    pub(crate) fn give_back(sets: &Mutex<Vec<Private>>, set: Private) {
+        lock(sets).push(set);
     }
 
     /// The set that all threads add to.
@@ -92,21 +99,68 @@ impl Store {
         Shared(sums)
     }
 
-    /// Adds the set of one thread to the total.
-    pub(crate) fn merge(total: &std::sync::Mutex<Vec<i64>>, part: &Private) {
-        let mut total = total.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        for (sum, part) in total.iter_mut().zip(&part.0) {
-            *sum += part;
+    /// The sums as they are now.
+    pub(crate) fn total(&mut self) -> Total<'_> {
+        match self {
+            Self::Private { sets, .. } => {
+                let sets = sets.get_mut().unwrap_or_else(PoisonError::into_inner);
+                Total::Sets(sets.iter().map(|set| set.0.as_slice()).collect())
+            }
+            Self::Shared(sums) => Total::Shared(sums),
         }
     }
 
     /// The sums.
     pub(crate) fn into_sums(self) -> Vec<i64> {
         match self {
-            Self::Private { total, .. } => {
-                total.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)
+            Self::Private { len, sets } => {
+                let mut sets = sets.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter();
+                let mut total = sets.next().map_or_else(|| vec![0; len], |set| set.0);
+                for set in sets {
+                    total.iter_mut().zip(&set.0).for_each(|(sum, part)| *sum += part);
+                }
+                total
             }
+            // The same memory: an atomic has the size of its number.
             Self::Shared(sums) => sums.into_iter().map(AtomicI64::into_inner).collect(),
+        }
+    }
+}
+
+fn lock(sets: &Mutex<Vec<Private>>) -> std::sync::MutexGuard<'_, Vec<Private>> {
+    sets.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Sums to read, wherever they are kept.
+#[derive(Debug)]
+pub(crate) enum Total<'a> {
+    /// To be added up.
+    Sets(Vec<&'a [i64]>),
+    /// One set.
+    Shared(&'a [AtomicI64]),
+}
+
+impl<'a> Total<'a> {
+    /// The sums of a finished bake.
+    pub(crate) fn of(sums: &'a [i64]) -> Self {
+        Self::Sets(vec![sums])
+    }
+
+    /// `N` sums from `first` on.
+    #[inline]
+    pub(crate) fn get<const N: usize>(&self, first: usize) -> [i64; N] {
+        match self {
+            Self::Sets(sets) => {
+                let mut sums = [0; N];
+                for set in sets {
+                    sums.iter_mut().zip(&set[first..][..N]).for_each(|(sum, part)| *sum += part);
+                }
+                sums
+            }
+            Self::Shared(sums) => {
+                let sums = &sums[first..][..N];
+                core::array::from_fn(|n| sums[n].load(Ordering::Relaxed))
+            }
         }
     }
 }

@@ -1,22 +1,23 @@
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use glam::DVec3;
-use ivg_format::{Lattice, Quantity};
+use ivg_format::Quantity;
 use ivg_grid::{GridValues, IrradianceGrid};
 use ivg_scene::{EffectPlan, FlatScene, Scene};
 
-use crate::accumulate::{MAX_FLIGHTS, Store};
+use crate::accumulate::Total;
+use crate::accuracy::{self, AccuracyReport, Simulated, gathering};
 use crate::dual::Boxes;
 use crate::estimate::Estimate;
 use crate::estimate::face_crossing::FaceCrossing;
+use crate::estimate::held::Held;
 use crate::estimate::track_length::{RadianceTracks, VectorTracks};
+use crate::ready::Ready;
 use crate::region::Regions;
-use crate::stage::{Effects, Stage};
+use crate::stage::Effects;
+use crate::tally::{self, Photons, Tally, Traced};
 use crate::trace::{Books, Tracer};
 use crate::validity::Surroundings;
 use crate::workers::Workers;
-use crate::{BakeError, BakeOptions, Estimator, Monitor};
+use crate::{BakeError, BakeOptions, BakeStage, Estimator, Monitor};
 
 /// A baked grid and what the bake has to say about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,13 +27,18 @@ pub struct BakeResult {
     pub grid: IrradianceGrid,
     /// Figures of the bake.
     pub stats: BakeStats,
+    /// How accurate the grid is, if an accuracy was asked for.
+    pub accuracy: Option<AccuracyReport>,
 }
 
-/// Figures of a bake. They depend on the scene and the options alone, not on time or threads.
+/// Figures of a bake. They depend on the scene and the options alone, not on time or threads, unless the monitor ended it.
+/// [`Estimator::Gather`] traces no photons: its flights and watts are 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakeStats {
     /// Photons traced.
     pub photons: u64,
+    /// Paths traced to gather light at vertices.
+    pub paths: u64,
     /// Straight flights of photons between surfaces: rays traced for them.
     pub flights: u64,
     /// Power that all lights emit \[W\], linear RGB, as the photons sampled it.
@@ -61,17 +67,19 @@ pub struct BakedLight {
     pub direct: bool,
 }
 
-/// Photons that a thread takes at a time.
-const PHOTONS_A_PIECE: u64 = 2048;
-
 /// Bakes the indirect light of a scene.
 ///
 /// Photons leave the lights in proportion to their power and are traced until they are absorbed, leave the scene or have
 /// been reflected `plan.max_bounces` times; their flights are deposited in the grid by the estimator of the options. First
 /// flights are left out, except the sky's: direct light is the client's work. Only effects that the plan needs are
-/// simulated.
+/// simulated. With [`Estimator::Gather`] every vertex is path traced instead.
 ///
-/// For one release and target the result depends only on scene, plan and options, whatever the number of threads.
+/// With an accuracy in the options, photons are traced in rounds until noise and bias together are small enough
+/// ([`AccuracyReport`]), and vertices for which that would take too long are path traced. Vertices that are not hold what a
+/// bake of as many photons gives, bit for bit.
+///
+/// For one release and target the result depends only on scene, plan and options, whatever the number of threads, unless
+/// [`Monitor::enough`] ends the bake.
 ///
 /// # Errors
 ///
@@ -84,19 +92,26 @@ pub fn bake(
     options: &BakeOptions,
     monitor: &dyn Monitor,
 ) -> Result<BakeResult, BakeError> {
+    monitor.stage(BakeStage::Preparation);
     let ready = Ready::new(scene, flat, plan, options)?;
-    let workers = Workers { threads: options.thread_count(), monitor, total_photons: options.photons };
+    let photons = options.photons.min(ready.most_photons);
+    let workers = Workers { threads: options.thread_count(), monitor, total_photons: photons };
     let surroundings = ready.surroundings(options.estimator, &workers)?;
     let tracer = ready.tracer(options.seed, plan.max_bounces);
-    let power = tracer.stage.emitters.total_power() / options.photons as f64;
-    let estimate = Chosen::new(options, ready.cells, &surroundings.regions)?;
-    let Traced { sums, books } = estimate.run(&tracer, options.photons, &workers)?;
-    let values = estimate.values(&sums, ready.cells.len(), power * ready.per_area);
-    let grid =
-        IrradianceGrid::from_parts(ready.lattice, values, surroundings.validity, surroundings.blocked_edges)?;
-    let watts = |quanta: [i128; 3]| DVec3::from(quanta.map(|q| q as f64)) * (power / Books::QUANTA);
+    let job = Job { options, ready: &ready, surroundings: &surroundings, tracer, workers, photons };
+    let simulated = match (options.estimator, options.quantity) {
+        (Estimator::Gather, Quantity::Vectors) => gathering::run::<ivg_format::HemisphereVectors>(&job)?,
+        (Estimator::Gather, Quantity::Radiance) => gathering::run::<ivg_format::RadianceHarmonics>(&job)?,
+        _ => Chosen::new(options, ready.cells, &surroundings.regions)?.simulate(&job)?,
+    };
+    let Simulated { values, books, photons, paths, accuracy } = simulated;
+    let unit = ready.stage.emitters.total_power() / photons.max(1) as f64;
+    let watts = |quanta: [i128; 3]| DVec3::from(quanta.map(|q| q as f64)) * (unit / Books::QUANTA);
+    let Surroundings { validity, blocked_edges, .. } = surroundings;
+    let grid = IrradianceGrid::from_parts(ready.lattice, values, validity, blocked_edges)?;
     let stats = BakeStats {
-        photons: options.photons,
+        photons,
+        paths,
         flights: books.flights,
         emitted: watts(books.emitted),
         absorbed: watts(books.absorbed),
@@ -106,7 +121,59 @@ pub fn bake(
         blocked_edges: grid.blocked_edge_count(),
         lights: lights(scene, flat, Effects::of(plan)),
     };
-    Ok(BakeResult { grid, stats })
+    Ok(BakeResult { grid, stats, accuracy })
+}
+
+/// A bake on its way: all that simulating light needs.
+pub(crate) struct Job<'a> {
+    pub(crate) options: &'a BakeOptions,
+    pub(crate) ready: &'a Ready<'a>,
+    pub(crate) surroundings: &'a Surroundings,
+    pub(crate) tracer: Tracer<'a>,
+    pub(crate) workers: Workers<'a>,
+    /// The most photons.
+    pub(crate) photons: u64,
+}
+
+impl Job<'_> {
+    pub(crate) fn seed(&self) -> u64 {
+        self.options.seed
+    }
+
+    /// What all photons together carry \[W\], for lengths in bake units.
+    pub(crate) fn power(&self) -> f64 {
+        self.ready.stage.emitters.total_power() * self.ready.per_area
+    }
+
+    /// The vertices that light reaches.
+    pub(crate) fn counted(&self) -> impl Iterator<Item = usize> {
+        let validity = self.surroundings.validity.iter().enumerate();
+        validity.filter(|(_, validity)| **validity > 0).map(|(vertex, _)| vertex)
+    }
+}
+
+/// Photons between two questions whether there are enough: so many, then an eighth of those traced.
+const PHOTONS_A_STRETCH: u64 = 1 << 16;
+
+/// Traces the photons of a job, all or until the monitor has enough.
+fn all_photons<E: Estimate<Value: Held>>(job: &Job<'_>, estimate: &E) -> Result<Simulated, BakeError>
+where
+    GridValues: From<Vec<E::Value>>,
+{
+    job.workers.monitor.stage(BakeStage::Photons);
+    let mut tally = Tally::new(&job.tracer, estimate, job.workers.threads);
+    let mut next = 0;
+    while next < job.photons && (next == 0 || !job.workers.monitor.enough()) {
+        let last = (next + PHOTONS_A_STRETCH.max(next / 8)).min(job.photons);
+        tally.trace(Photons::all(next, last), &job.workers)?;
+        next = last;
+    }
+    let Traced { sums, books, photons } = tally.finish();
+    let power = job.power() / photons as f64;
+    let total = Total::of(&sums);
+    let vertices = 0..job.ready.cells.len();
+    let values: Vec<E::Value> = vertices.map(|vertex| estimate.value(&total, vertex, power)).collect();
+    Ok(Simulated { values: values.into(), books, photons, paths: 0, accuracy: None })
 }
 
 /// The estimator of the options.
@@ -130,7 +197,7 @@ impl<'a> Chosen<'a> {
             (Quantity::Vectors, Estimator::FaceCrossingRr6983) => {
                 Self::Faces(FaceCrossing::as_printed(cells))
             }
-            (Quantity::Radiance, estimator) => return Err(BakeError::Quantity { estimator }),
+            (_, estimator) => return Err(BakeError::Quantity { estimator }),
         })
     }
 
@@ -142,143 +209,29 @@ impl<'a> Chosen<'a> {
         workers: &Workers<'_>,
     ) -> Result<Traced, BakeError> {
         match self {
-            Self::Vectors(estimate) => run(tracer, estimate, photons, workers),
-            Self::Radiance(estimate) => run(tracer, estimate, photons, workers),
-            Self::Faces(estimate) => run(tracer, estimate, photons, workers),
+            Self::Vectors(estimate) => tally::run(tracer, estimate, photons, workers),
+            Self::Radiance(estimate) => tally::run(tracer, estimate, photons, workers),
+            Self::Faces(estimate) => tally::run(tracer, estimate, photons, workers),
         }
     }
 
-    /// The values of `count` vertices from all sums; `power` as in [`Estimate::value`].
-    fn values(&self, sums: &[i64], count: usize, power: f64) -> GridValues {
-        fn all<E: Estimate>(estimate: &E, sums: &[i64], count: usize, power: f64) -> Vec<E::Value> {
-            (0..count).map(|vertex| estimate.value(sums, vertex, power)).collect()
+    /// Simulates the light of a job.
+    fn simulate(&self, job: &Job<'_>) -> Result<Simulated, BakeError> {
+        fn go<E: Estimate<Value: Held>>(job: &Job<'_>, estimate: &E) -> Result<Simulated, BakeError>
+        where
+            GridValues: From<Vec<E::Value>>,
+        {
+            match job.options.accuracy {
+                Some(asked) => accuracy::run(job, estimate, asked),
+                None => all_photons(job, estimate),
+            }
         }
         match self {
-            Self::Vectors(estimate) => all(estimate, sums, count, power).into(),
-            Self::Radiance(estimate) => all(estimate, sums, count, power).into(),
-            Self::Faces(estimate) => all(estimate, sums, count, power).into(),
+            Self::Vectors(estimate) => go(job, estimate),
+            Self::Radiance(estimate) => go(job, estimate),
+            Self::Faces(estimate) => go(job, estimate),
         }
     }
-}
-
-/// A scene and a lattice ready for photons.
-#[derive(Debug)]
-pub(crate) struct Ready<'a> {
-    pub(crate) stage: Stage<'a>,
-    pub(crate) lattice: Lattice,
-    pub(crate) cells: Boxes,
-    /// Bake units per metre, squared: from power per square bake unit to W/m².
-    per_area: f64,
-}
-
-impl<'a> Ready<'a> {
-    pub(crate) fn new(
-        scene: &'a Scene,
-        flat: &'a FlatScene,
-        plan: &EffectPlan,
-        options: &BakeOptions,
-    ) -> Result<Self, BakeError> {
-        let (photons, bounces) = (options.photons, plan.max_bounces);
-        let most = MAX_FLIGHTS / (u64::from(bounces) + 1);
-        if options.quantity == Quantity::Radiance && options.estimator != Estimator::TrackLength {
-            return Err(BakeError::Quantity { estimator: options.estimator });
-        }
-        if photons == 0 {
-            return Err(BakeError::NoPhotons);
-        }
-        if photons > most {
-            return Err(BakeError::TooManyPhotons { photons, bounces, most });
-        }
-        let (min, max) = options.first_and_last(flat)?;
-        let lattice = Lattice::new(options.dims, min.to_array(), max.to_array())?;
-        // Refuses a lattice that cannot be held before anything of its size is allocated.
-        ivg_grid_limit(&lattice)?;
-        let thickness = options.thickness(&lattice, min, max);
-        let half = DVec3::from_array(core::array::from_fn(|a| {
-            0.5 * if lattice.step[a] > 0.0 { lattice.step[a] } else { thickness[a] }
-        }));
-        let (first, last) = (DVec3::from(lattice.origin), DVec3::from(last_vertex(&lattice)));
-        let stage = Stage::new(scene, flat, Effects::of(plan), Some((first - half, last + half)))?;
-        let cells = Boxes::dual_cells(&lattice, thickness, stage.space);
-        let per_area = stage.space.scale().powi(2);
-        Ok(Self { stage, lattice, cells, per_area })
-    }
-
-    /// What each vertex sees; for the estimator as printed, which knows no geometry, everything.
-    pub(crate) fn surroundings(
-        &self,
-        estimator: Estimator,
-        workers: &Workers<'_>,
-    ) -> Result<Surroundings, BakeError> {
-        match estimator {
-            Estimator::FaceCrossingRr6983 => Ok(Surroundings::open(&self.cells)),
-            _ => Surroundings::new(&self.stage, &self.cells, workers),
-        }
-    }
-
-    pub(crate) fn tracer(&self, seed: u64, max_bounces: u32) -> Tracer<'_> {
-        Tracer { stage: &self.stage, seed, max_bounces }
-    }
-}
-
-/// The most vertices that a bake holds: a lattice of 256³.
-fn ivg_grid_limit(lattice: &Lattice) -> Result<(), BakeError> {
-    let (vertices, limit) = (lattice.vertex_count(), ivg_grid::DEFAULT_MAX_VERTICES);
-    if vertices > limit {
-        return Err(ivg_grid::GridError::TooManyVertices { vertices, limit }.into());
-    }
-    Ok(())
-}
-
-fn last_vertex(lattice: &Lattice) -> [f64; 3] {
-    let [i, j, k] = lattice.dims.map(|n| n - 1);
-    lattice.position(i, j, k)
-}
-
-/// What tracing left.
-#[derive(Debug)]
-pub(crate) struct Traced {
-    sums: Vec<i64>,
-    /// Where the energy went.
-    pub(crate) books: Books,
-}
-
-/// Traces `photons` photons on all threads.
-pub(crate) fn run(
-    tracer: &Tracer<'_>,
-    estimate: &impl Estimate,
-    photons: u64,
-    workers: &Workers<'_>,
-) -> Result<Traced, BakeError> {
-    let store = Store::new(estimate.sums(), workers.threads);
-    let books = Mutex::new(Books::default());
-    let done = AtomicU64::new(0);
-    workers.run(photons.div_ceil(PHOTONS_A_PIECE), &done, |take| {
-        let mut own = Books::default();
-        let mut trace = |sums: &mut dyn FnMut(u64, &mut Books)| {
-            while let Some(piece) = take() {
-                let first = piece * PHOTONS_A_PIECE;
-                let last = (first + PHOTONS_A_PIECE).min(photons);
-                (first..last).for_each(|photon| sums(photon, &mut own));
-                let done = done.fetch_add(last - first, Ordering::Relaxed) + (last - first);
-                workers.monitor.progress(done, photons);
-            }
-        };
-        match &store {
-            Store::Private { len, total } => {
-                let mut sums = Store::private(*len);
-                trace(&mut |photon, books| tracer.trace(photon, estimate, &mut sums, books));
-                Store::merge(total, &sums);
-            }
-            Store::Shared(cells) => {
-                let mut sums = Store::view(cells);
-                trace(&mut |photon, books| tracer.trace(photon, estimate, &mut sums, books));
-            }
-        }
-        books.lock().unwrap_or_else(std::sync::PoisonError::into_inner).merge(&own);
-    })?;
-    let books = books.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    Ok(Traced { sums: store.into_sums(), books })
 }
 
 /// The lights of a scene: emissive materials in use, lights without a surface, the sky.

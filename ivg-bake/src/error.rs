@@ -13,6 +13,22 @@ pub enum BakeError {
     /// A photon count of zero.
     #[error("at least one photon is needed, 0 were asked for")]
     NoPhotons,
+    /// Fewer photons than noise can be estimated from.
+    #[error("{photons} photons are too few to tell how accurate a grid is; at least {least} are needed")]
+    FewPhotons {
+        /// The most photons allowed.
+        photons: u64,
+        /// The fewest needed.
+        least: u64,
+    },
+    /// An accuracy that is not a share above zero.
+    #[error(
+        "an accuracy of {asked} cannot be reached; give a relative error above 0 and below 1, such as 0.02"
+    )]
+    Accuracy {
+        /// The relative error asked for.
+        asked: f64,
+    },
     /// More photons than the sums are proven to hold.
     #[error("{photons} photons with up to {bounces} reflections could overflow the sums; at most {most} fit")]
     TooManyPhotons {

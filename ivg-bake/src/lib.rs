@@ -16,9 +16,6 @@
 //! an irradiance vector is, is said in `spec/ivg.md`: the integral over a hemisphere of radiance times direction, pointing to
 //! where the light comes from.
 //!
-//! Surfaces reflect evenly, mirror (sharply or through facets), and let light through, as [`ivg_scene::Lobes`] mixes them; where
-//! the plan needs neither mirrors nor glass, the code that traces photons knows of neither.
-//!
 //! # Guarantees
 //!
 //! * For one release and target the result depends on scene, plan and options alone: random numbers are a function of
@@ -81,6 +78,7 @@
 
 mod accel;
 mod accumulate;
+mod accuracy;
 mod bake;
 #[cfg(any(test, feature = "cases"))]
 pub mod cases;
@@ -89,23 +87,25 @@ mod emit;
 mod error;
 mod estimate;
 mod intersect;
-mod lobes;
 mod monitor;
 mod options;
 mod overlap;
 mod pilot;
+mod ready;
 pub mod reference;
 mod region;
 mod sampling;
 mod space;
 mod stage;
 mod surface;
+mod tally;
 mod trace;
 mod validity;
 mod workers;
 
+pub use accuracy::{AccuracyReport, CONFIDENCE, EndedBy};
 pub use bake::{BakeResult, BakeStats, BakedLight, bake};
 pub use error::BakeError;
-pub use monitor::{Monitor, Silent};
+pub use monitor::{BakeStage, Monitor, Silent};
 pub use options::{BakeOptions, Estimator, automatic_bounds, dims_for};
 pub use pilot::{PilotReport, pilot};

@@ -9,6 +9,26 @@ pub trait Monitor: Sync {
     fn cancelled(&self) -> bool {
         false
     }
+
+    /// Whether to end early with the photons traced so far, as when a time is up; asked between batches of photons. The grid
+    /// is then that of the number of photons that [`BakeStats`](crate::BakeStats) tells.
+    fn enough(&self) -> bool {
+        false
+    }
+
+    /// A part of the work begins. Called from one thread.
+    fn stage(&self, _stage: BakeStage) {}
+}
+
+/// A part of the work of a bake.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BakeStage {
+    /// Triangles sorted into a tree, what each vertex sees.
+    Preparation,
+    /// Photons traced and deposited.
+    Photons,
+    /// Light gathered at vertices by path tracing.
+    Gathering,
 }
 
 /// A [`Monitor`] that shows nothing and never cancels.

@@ -16,11 +16,20 @@ pub enum Estimator {
     FaceCrossing,
     /// Crossings as RR-6983 prints the sum: a third too dark in even light. For comparison only.
     FaceCrossingRr6983,
+    /// No photons: every vertex is path traced. Unbiased and slow; the yardstick of the others.
+    Gather,
 }
 
 impl Estimator {
     /// All estimators, the default one first.
-    pub const ALL: [Self; 3] = [Self::TrackLength, Self::FaceCrossing, Self::FaceCrossingRr6983];
+    pub const ALL: [Self; 4] =
+        [Self::TrackLength, Self::FaceCrossing, Self::FaceCrossingRr6983, Self::Gather];
+
+    /// Whether it gives spherical harmonics of the radiance, and not irradiance vectors alone.
+    #[must_use]
+    pub fn gives_radiance(self) -> bool {
+        matches!(self, Self::TrackLength | Self::Gather)
+    }
 
     /// The name on the command line and in files.
     #[must_use]
@@ -29,6 +38,7 @@ impl Estimator {
             Self::TrackLength => "track-length",
             Self::FaceCrossing => "face-crossing",
             Self::FaceCrossingRr6983 => "face-crossing-rr6983",
+            Self::Gather => "gather",
         }
     }
 
@@ -47,12 +57,19 @@ pub struct BakeOptions {
     pub dims: [u16; 3],
     /// First and last vertex in world space \[m\], taken as they are; `None`: see [`automatic_bounds`].
     pub bounds: Option<(DVec3, DVec3)>,
-    /// Photons, at least 1. Noise falls with the square root.
+    /// Photons, at least 1; with an `accuracy`, the most. Noise falls with the square root. [`Estimator::Gather`] traces
+    /// none.
     pub photons: u64,
+    /// The relative error to stop at, in (0, 1), as [`AccuracyReport`](crate::AccuracyReport) measures it; `None`: all
+    /// photons (or paths) are traced, and nothing is said about the error.
+    pub accuracy: Option<f64>,
+    /// Paths that [`Estimator::Gather`] traces for each vertex, rounded up to a multiple of 64 and at least 512; with an
+    /// `accuracy`, the most, and at least 1024.
+    pub paths: u32,
     /// How flights become what the vertices hold.
     pub estimator: Estimator,
     /// What the vertices hold: irradiance vectors, or spherical harmonics of the radiance, which only
-    /// [`Estimator::TrackLength`] gives.
+    /// [`Estimator::TrackLength`] and [`Estimator::Gather`] give.
     pub quantity: Quantity,
     /// Seed of the random numbers. The same seed gives the same grid, bit for bit.
     pub seed: u64,
@@ -67,6 +84,8 @@ impl Default for BakeOptions {
             dims: [16; 3],
             bounds: None,
             photons: 1_000_000,
+            accuracy: None,
+            paths: 4096,
             estimator: Estimator::TrackLength,
             quantity: Quantity::Vectors,
             seed: 1,

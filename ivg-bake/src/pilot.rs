@@ -7,10 +7,12 @@ use std::time::Instant;
 
 use ivg_scene::{Cost, Effect, EffectPlan, FlatScene, Need, Scene};
 
-use crate::accumulate::Sums;
-use crate::bake::{Chosen, Ready, Traced, run};
+use crate::accumulate::{Sums, Total};
+use crate::bake::Chosen;
 use crate::estimate::{Estimate, Flight};
+use crate::ready::Ready;
 use crate::stage::{Effects, Stage};
+use crate::tally::{Traced, run};
 use crate::trace::{BOOKED_BOUNCES, Tracer};
 use crate::workers::Workers;
 use crate::{BakeError, BakeOptions, Silent};
@@ -166,7 +168,7 @@ impl Estimate for NoDeposits {
 
     fn deposit(&self, _flight: &Flight, _sums: &mut impl Sums) {}
 
-    fn value(&self, _sums: &[i64], _vertex: usize, _power: f64) {}
+    fn value(&self, _sums: &Total<'_>, _vertex: usize, _power: f64) {}
 }
 
 #[cfg(test)]

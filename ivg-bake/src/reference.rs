@@ -7,10 +7,11 @@
 use core::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
-use ivg_grid::harmonics::{COEFFICIENTS, basis};
+use ivg_grid::harmonics::COEFFICIENTS;
 use ivg_scene::{Camera, FlatScene, Scene};
 
 use crate::estimate::gather::{Batches, Mean};
+use crate::estimate::vertex_gather::{self, RADIANCE_NUMBERS, VECTOR_NUMBERS};
 use crate::overlap::closest_point;
 use crate::sampling::rng::{Purpose, Stream};
 use crate::stage::{Effects, Stage};
@@ -89,16 +90,14 @@ pub struct Picture {
 }
 
 impl<'a> Oracle<'a> {
-    /// A tracer over a scene, with everything in it: textures, sky, mirrors, glass.
-    ///
-    /// What it cannot find is light of point, spot and directional lights that a mirror or a solid of glass sends on: no
-    /// path from a point meets such a light by chance. It finds it through panes.
+    /// A tracer over a scene, with its textures and its sky.
     ///
     /// # Errors
     ///
     /// [`BakeError::NoLight`], [`BakeError::BadNumber`], [`BakeError::BadIndex`], [`BakeError::TreeTooDeep`].
     pub fn new(scene: &'a Scene, flat: &'a FlatScene) -> Result<Self, BakeError> {
-        Ok(Self { stage: Stage::new(scene, flat, Effects::ALL, None)? })
+        let effects = Effects { textures: true, sky: true };
+        Ok(Self { stage: Stage::new(scene, flat, effects, None)? })
     }
 
     /// The indirect irradiance vectors at points in world space \[m\].
@@ -267,26 +266,10 @@ impl<'a> Oracle<'a> {
     }
 }
 
-/// Numbers of the irradiance vectors and of the harmonics of a point.
-const VECTOR_NUMBERS: usize = 54;
-const RADIANCE_NUMBERS: usize = 3 * COEFFICIENTS;
-
 /// Adds light from direction `w` \[W/m²\] to the numbers of a point: vectors, harmonics, irradiance for each normal.
 fn add_light(sums: &mut [f64], w: DVec3, light: DVec3, normals: &[DVec3]) {
-    let (vectors, rest) = sums.split_at_mut(VECTOR_NUMBERS);
-    let (harmonics, irradiance) = rest.split_at_mut(RADIANCE_NUMBERS);
-    for axis in 0..3 {
-        if w[axis] != 0.0 {
-            let hemisphere = 2 * axis + usize::from(w[axis] < 0.0);
-            for (n, sum) in vectors[9 * hemisphere..][..9].iter_mut().enumerate() {
-                *sum += light[n / 3] * w[n % 3];
-            }
-        }
-    }
-    let basis = basis(w);
-    for (n, sum) in harmonics.iter_mut().enumerate() {
-        *sum += light[n / COEFFICIENTS] * basis[n % COEFFICIENTS];
-    }
+    let (numbers, irradiance) = sums.split_at_mut(VECTOR_NUMBERS + RADIANCE_NUMBERS);
+    vertex_gather::add_light(numbers, w, light);
     for (sums, normal) in irradiance.chunks_exact_mut(3).zip(normals) {
         let cos = normal.dot(w).max(0.0);
         sums.iter_mut().zip(light.to_array()).for_each(|(sum, light)| *sum += light * cos);

@@ -16,9 +16,6 @@
 //! vertices that see anything are valid.
 //!
 //! **Blocked edges.** The edge to the next vertex is blocked if geometry lies between the points that the two look from.
-//!
-//! Where glass is simulated, panes that let most light through are not there for any of this: one sees past them. Solids of glass
-//! stop sight, as other solids do, but not the light that is looked for.
 
 use glam::Vec3;
 
@@ -26,7 +23,7 @@ use crate::BakeError;
 use crate::accel::Hit;
 use crate::dual::Boxes;
 use crate::overlap::{closest_point, triangle_meets_box};
-use crate::region::{FEWEST_SUB_CELLS, Mask, Regions, SUB, SUB_CELLS};
+use crate::region::{FEWEST_SUB_CELLS, Mask, Region, Regions, SUB, SUB_CELLS};
 use crate::sampling::hemisphere;
 use crate::sampling::rng::{Purpose, Stream};
 use crate::stage::Stage;
@@ -76,6 +73,8 @@ pub(crate) struct Surroundings {
     pub(crate) validity: Vec<u8>,
     /// Bits 0, 1, 2: the edge to the +x, +y, +z neighbour is blocked.
     pub(crate) blocked_edges: Vec<u8>,
+    /// Where each vertex looks from, in bake space.
+    pub(crate) eyes: Vec<Vec3>,
 }
 
 /// A vertex's point of view.
@@ -94,10 +93,8 @@ impl Surroundings {
     ///
     /// [`BakeError::Cancelled`].
     pub(crate) fn new(stage: &Stage<'_>, cells: &Boxes, workers: &Workers<'_>) -> Result<Self, BakeError> {
-        let opaque = stage.surfaces.without_panes();
-        let triangles = opaque.as_deref().unwrap_or(stage.surfaces.triangles());
-        let distances = distances(triangles, cells);
-        let sides = SidePoints::new(triangles, cells, &distances);
+        let distances = distances(stage.surfaces.triangles(), cells);
+        let sides = SidePoints::new(stage.surfaces.triangles(), cells, &distances);
         let views = map(workers, cells.len(), |vertex| stage.view(cells, vertex, distances[vertex], &sides))?;
         let any_lit = views.iter().any(|view| view.lit);
         let regions = Regions::new(views.iter().map(|view| {
@@ -123,13 +120,13 @@ impl Surroundings {
                 let next = cells.index(next);
                 // An edge lies in the two cells it joins: without geometry in them nothing can be in between.
                 let touched = distances[vertex].is_finite() || distances[next].is_finite();
-                if touched && stage.sight().occluded(eyes[vertex], eyes[next] - eyes[vertex], 1.0) {
+                if touched && stage.accel.occluded(eyes[vertex], eyes[next] - eyes[vertex], 1.0) {
                     bits |= 1 << axis;
                 }
             }
             bits
         })?;
-        Ok(Self { regions, validity, blocked_edges })
+        Ok(Self { regions, validity, blocked_edges, eyes })
     }
 
     /// Surroundings in which everything counts: what RR-6983 assumes.
@@ -139,7 +136,30 @@ impl Surroundings {
             regions: Regions::new((0..vertices).map(|_| None)),
             validity: vec![255; vertices],
             blocked_edges: vec![0; vertices],
+            eyes: (0..vertices).map(|vertex| cells.middle(cells.coords(vertex))).collect(),
         }
+    }
+
+    /// Whether geometry touches the dual cell of a vertex and leaves some of it.
+    pub(crate) fn is_touched(&self, vertex: usize) -> bool {
+        matches!(self.regions.get(vertex), Region::Part(_))
+    }
+
+    /// The valid neighbours of a vertex to which the way is free.
+    pub(crate) fn open_neighbours(&self, cells: &Boxes, vertex: usize) -> impl Iterator<Item = usize> {
+        let at = cells.coords(vertex);
+        let neighbours = (0..3).flat_map(move |axis| [(axis, false), (axis, true)]);
+        neighbours.filter_map(move |(axis, above)| {
+            let mut next = at;
+            next[axis] = if above { at[axis] + 1 } else { at[axis].wrapping_sub(1) };
+            if next[axis] >= cells.count[axis] {
+                return None;
+            }
+            let next = cells.index(next);
+            let lower = if above { vertex } else { next };
+            let open = self.blocked_edges[lower] >> axis & 1 == 0;
+            (open && self.validity[next] > 0).then_some(next)
+        })
     }
 }
 
@@ -165,14 +185,14 @@ impl Stage<'_> {
         let look = |eye: Vec3| {
             let lit = self.reached(eye, vertex);
             let mask =
-                if lit { Mask::seen(self.sight(), eye, cells.corner(at), cells.step) } else { Mask::NONE };
+                if lit { Mask::seen(&self.accel, eye, cells.corner(at), cells.step) } else { Mask::NONE };
             View { eye, mask: Some(mask), lit }
         };
         let Some(points) = sides.of(vertex) else { return look(middle) };
         // The first point of each side: those that come later see one of them.
         let mut first: Vec<Vec3> = Vec::new();
         for &point in points {
-            if first.iter().all(|&other| self.sight().occluded(point, other - point, 1.0)) {
+            if first.iter().all(|&other| self.accel.occluded(point, other - point, 1.0)) {
                 first.push(point);
             }
         }
@@ -203,7 +223,7 @@ impl Stage<'_> {
             let stream = Stream::new(REACH_SEED, item);
             let u = stream.uniforms(0, Purpose::Reach);
             let direction = hemisphere::sphere([u[0], u[1]]);
-            let first = self.clear().closest_hit(point, direction, f32::MAX);
+            let first = self.accel.closest_hit(point, direction, f32::MAX);
             behind += u32::from(first.is_some_and(|hit| self.is_behind(&hit, direction)));
             found += u32::from(self.path_finds_light(point, direction, first, &stream));
             // Most vertices are settled by their first paths.
@@ -238,7 +258,7 @@ impl Stage<'_> {
             if self.surfaces.emission(hit.triangle, surface.normal, -direction).max_element() > 0.0 {
                 return true;
             }
-            if !self.surfaces.sends_on(&hit) {
+            if self.surfaces.albedo(&hit).max_element() <= 0.0 {
                 return false;
             }
             let side = surface.facing(-direction);
@@ -248,7 +268,7 @@ impl Stage<'_> {
             }
             let u = stream.uniforms(bounce, Purpose::Reach);
             direction = hemisphere::cosine(side, [u[0], u[1]]);
-            next = self.clear().closest_hit(origin, direction, f32::MAX);
+            next = self.accel.closest_hit(origin, direction, f32::MAX);
         }
         false
     }
@@ -258,7 +278,7 @@ impl Stage<'_> {
         self.emitters.arrive(point, stream, step).is_some_and(|light| {
             side.is_none_or(|side| side.dot(light.direction) > GRAZING)
                 && light.cosine > GRAZING
-                && !self.clear().occluded(point, light.direction, light.distance)
+                && !self.accel.occluded(point, light.direction, light.distance)
         })
     }
 }

@@ -75,3 +75,30 @@ pub(crate) fn map<T: Send>(
     parts.sort_by_key(|(piece, _)| *piece);
     Ok(parts.into_iter().flat_map(|(_, part)| part).collect())
 }
+
+/// Items of a chunk of [`map_chunks`]: the chunks do not depend on how many threads there are.
+const CHUNK: usize = 1024;
+
+/// `function` of every chunk of `items`, given the index of its first item; the results in order.
+///
+/// # Errors
+///
+/// [`BakeError::Cancelled`].
+pub(crate) fn map_chunks<T: Send, R: Send>(
+    workers: &Workers<'_>,
+    items: &mut [T],
+    function: impl Fn(usize, &mut [T]) -> R + Sync,
+) -> Result<Vec<R>, BakeError> {
+    let chunks: Vec<Mutex<&mut [T]>> = items.chunks_mut(CHUNK).map(Mutex::new).collect();
+    let results: Vec<Mutex<Option<R>>> = chunks.iter().map(|_| Mutex::new(None)).collect();
+    workers.run(chunks.len() as u64, &AtomicU64::new(0), |take| {
+        while let Some(number) = take() {
+            let number = number as usize;
+            let mut chunk = chunks[number].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            let result = function(number * CHUNK, &mut chunk);
+            *results[number].lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(result);
+        }
+    })?;
+    let results = results.into_iter();
+    Ok(results.filter_map(|r| r.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)).collect())
+}

@@ -28,14 +28,20 @@ fn shared_and_private_sums_are_the_same() {
     let private = Store::new(45, 2);
     assert!(matches!(private, Store::Private { .. }));
     let Store::Shared(sums) = &shared else { panic!("not shared") };
-    let Store::Private { len, total } = &private else { panic!("not private") };
-    let (mut a, mut b) = (Store::private(*len), Store::private(*len));
+    let Store::Private { len, sets } = &private else { panic!("not private") };
+    let (mut a, mut b) = (Store::take(sets, *len), Store::take(sets, *len));
     for (n, (first, quanta)) in deposits.iter().enumerate() {
         Store::view(sums).add(*first, quanta);
         if n % 3 == 0 { a.add(*first, quanta) } else { b.add(*first, quanta) }
     }
-    Store::merge(total, &b);
-    Store::merge(total, &a);
+    Store::give_back(sets, b);
+    Store::give_back(sets, a);
+    let again = Store::take(sets, *len);
+    assert!(again.0.iter().any(|&s| s != 0), "a set with deposits is used again");
+    Store::give_back(sets, again);
+    let (mut shared, mut private) = (shared, private);
+    let numbers: [[i64; 45]; 2] = [shared.total().get(0), private.total().get(0)];
+    assert_eq!(numbers[0], numbers[1]);
     let sums = shared.into_sums();
     assert!(sums.iter().any(|&s| s != 0));
     assert_eq!(sums, private.into_sums());

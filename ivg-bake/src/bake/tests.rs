@@ -34,9 +34,12 @@ fn baked(scene: &(Scene, FlatScene), options: &BakeOptions) -> BakeResult {
 fn one_two_and_five_threads_give_the_same_result() {
     let scene = room();
     let vectors = Estimator::ALL.map(|estimator| (estimator, Quantity::Vectors));
-    for (estimator, quantity) in vectors.into_iter().chain([(Estimator::TrackLength, Quantity::Radiance)]) {
+    let radiance = Estimator::ALL.into_iter().filter(|e| e.gives_radiance()).map(|e| (e, Quantity::Radiance));
+    for (estimator, quantity) in vectors.into_iter().chain(radiance) {
         let [one, two, five] = [1, 2, 5].map(|threads| {
-            baked(&scene, &BakeOptions { estimator, quantity, threads: Some(threads), ..options(20_000) })
+            let paths = 512;
+            let threads = Some(threads);
+            baked(&scene, &BakeOptions { estimator, quantity, threads, paths, ..options(20_000) })
         });
         assert!(one.grid.largest_component() > 0.0);
         assert_eq!(one, two, "{estimator:?} {quantity:?}");
@@ -292,7 +295,7 @@ fn grids_of_one_and_two_vertices_an_axis_work() {
     let scene = room();
     for dims in [[1, 5, 4], [2, 2, 2], [1, 1, 1], [3, 1, 2]] {
         for estimator in Estimator::ALL {
-            let result = baked(&scene, &BakeOptions { dims, estimator, ..options(4000) });
+            let result = baked(&scene, &BakeOptions { dims, estimator, paths: 512, ..options(4000) });
             assert!(result.grid.largest_component().is_finite(), "{dims:?}");
         }
     }

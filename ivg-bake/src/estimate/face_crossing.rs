@@ -12,7 +12,7 @@ use glam::Vec3;
 use ivg_grid::HemisphereVectors;
 
 use super::{Estimate, Flight, NUMBERS};
-use crate::accumulate::{MAX_QUANTA, Sums};
+use crate::accumulate::{MAX_QUANTA, Sums, Total};
 use crate::dual::Boxes;
 use crate::region::{Region, Regions, SUB};
 
@@ -144,12 +144,12 @@ impl Estimate for FaceCrossing<'_> {
         }
     }
 
-    fn value(&self, sums: &[i64], vertex: usize, power: f64) -> HemisphereVectors {
+    fn value(&self, sums: &Total<'_>, vertex: usize, power: f64) -> HemisphereVectors {
         core::array::from_fn(|hemisphere| {
             let axis = hemisphere / 2;
             let across = [(axis + 1) % 3, (axis + 2) % 3].map(|a| f64::from(self.cells.step[a]));
             let area = across[0] * across[1] * self.area_share(vertex, axis);
-            let numbers = &sums[(vertex * HEMISPHERES + hemisphere) * NUMBERS..][..NUMBERS];
+            let numbers: [i64; NUMBERS] = sums.get((vertex * HEMISPHERES + hemisphere) * NUMBERS);
             core::array::from_fn(|channel| {
                 core::array::from_fn(|component| {
                     let sum = numbers[3 * channel + component] as f64;

@@ -2,11 +2,13 @@
 
 pub(crate) mod face_crossing;
 pub(crate) mod gather;
+pub(crate) mod held;
 pub(crate) mod track_length;
+pub(crate) mod vertex_gather;
 
 use glam::Vec3;
 
-use crate::accumulate::Sums;
+use crate::accumulate::{Sums, Total};
 
 /// Numbers of a flight's deposit of irradiance vectors: three channels times three axes.
 pub(crate) const NUMBERS: usize = 9;
@@ -45,5 +47,5 @@ pub(crate) trait Estimate: Sync {
     fn deposit(&self, flight: &Flight, sums: &mut impl Sums);
 
     /// The value of a vertex from all sums; `power` is what a photon of share 1 carries \[W\], lengths are in bake units.
-    fn value(&self, sums: &[i64], vertex: usize, power: f64) -> Self::Value;
+    fn value(&self, sums: &Total<'_>, vertex: usize, power: f64) -> Self::Value;
 }

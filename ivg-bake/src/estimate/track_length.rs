@@ -10,7 +10,7 @@ use ivg_format::{HemisphereVectors, RadianceHarmonics};
 use ivg_grid::harmonics::{COEFFICIENTS, basis};
 
 use super::{Estimate, Flight, NUMBERS};
-use crate::accumulate::{MAX_QUANTA, Sums};
+use crate::accumulate::{MAX_QUANTA, Sums, Total};
 use crate::dual::Boxes;
 use crate::region::{Region, Regions};
 
@@ -102,22 +102,26 @@ impl Estimate for VectorTracks<'_> {
         });
     }
 
-    fn value(&self, sums: &[i64], vertex: usize, power: f64) -> HemisphereVectors {
+    fn value(&self, sums: &Total<'_>, vertex: usize, power: f64) -> HemisphereVectors {
         let Some(scale) = self.0.scale(vertex, power) else { return HemisphereVectors::default() };
-        let number = |octant: usize, n: usize| sums[(octant * self.0.cells.len() + vertex) * NUMBERS + n];
-        core::array::from_fn(|hemisphere| {
-            let (axis, negative) = (hemisphere / 2, hemisphere % 2);
-            core::array::from_fn(|channel| {
-                core::array::from_fn(|component| {
-                    let sum: i64 = (0..OCTANTS)
-                        .filter(|octant| octant >> axis & 1 == negative)
-                        .map(|octant| number(octant, 3 * channel + component))
-                        .sum();
-                    (sum as f64 * scale) as f32
-                })
-            })
-        })
+        vectors_of(sums, self.0.cells.len(), vertex, scale)
     }
+}
+
+/// The vectors of a vertex from all sums of `vertices` vertices.
+pub(crate) fn vectors_of(sums: &Total<'_>, vertices: usize, vertex: usize, scale: f64) -> HemisphereVectors {
+    let octants: [[i64; NUMBERS]; OCTANTS] =
+        core::array::from_fn(|octant| sums.get((octant * vertices + vertex) * NUMBERS));
+    core::array::from_fn(|hemisphere| {
+        let (axis, negative) = (hemisphere / 2, hemisphere % 2);
+        let mut numbers = [0; NUMBERS];
+        for octant in (0..OCTANTS).filter(|octant| octant >> axis & 1 == negative) {
+            numbers.iter_mut().zip(octants[octant]).for_each(|(sum, part)| *sum += part);
+        }
+        core::array::from_fn(|channel| {
+            core::array::from_fn(|component| (numbers[3 * channel + component] as f64 * scale) as f32)
+        })
+    })
 }
 
 /// Numbers of a deposit of radiance: three channels times nine harmonics.
@@ -153,13 +157,18 @@ impl Estimate for RadianceTracks<'_> {
         });
     }
 
-    fn value(&self, sums: &[i64], vertex: usize, power: f64) -> RadianceHarmonics {
+    fn value(&self, sums: &Total<'_>, vertex: usize, power: f64) -> RadianceHarmonics {
         let Some(scale) = self.0.scale(vertex, power) else { return RadianceHarmonics::default() };
-        let numbers = &sums[vertex * RADIANCE_NUMBERS..][..RADIANCE_NUMBERS];
-        core::array::from_fn(|channel| {
-            core::array::from_fn(|n| (numbers[channel * COEFFICIENTS + n] as f64 * scale) as f32)
-        })
+        radiance_of(sums, vertex, scale)
     }
+}
+
+/// The harmonics of a vertex from all sums.
+pub(crate) fn radiance_of(sums: &Total<'_>, vertex: usize, scale: f64) -> RadianceHarmonics {
+    let numbers: [i64; RADIANCE_NUMBERS] = sums.get(vertex * RADIANCE_NUMBERS);
+    core::array::from_fn(|channel| {
+        core::array::from_fn(|n| (numbers[channel * COEFFICIENTS + n] as f64 * scale) as f32)
+    })
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ fn estimators_are_found_by_their_names() {
     for estimator in Estimator::ALL {
         assert_eq!(Estimator::from_name(estimator.name()), Some(estimator));
     }
-    assert_eq!(Estimator::from_name("gather"), None);
+    assert_eq!(Estimator::from_name("gathering"), None);
     assert_eq!(Estimator::default(), Estimator::ALL[0]);
 }
 

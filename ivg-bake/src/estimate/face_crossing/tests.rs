@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::FaceCrossing;
-use crate::accumulate::{MAX_QUANTA, Sums};
+use crate::accumulate::{MAX_QUANTA, Sums, Total};
 use crate::dual::Boxes;
 use crate::estimate::{Estimate, Flight};
 use crate::region::Regions;
@@ -39,7 +39,7 @@ fn a_crossing_adds_to_the_nearest_vertex_on_the_side_the_light_comes_from() {
         let sums = deposit(&estimate, &[flight]);
         assert_eq!(sums.1, 2);
         let vertex = CELLS.index([1, 2, 2]);
-        let vectors = estimate.value(&sums.0, vertex, 1.0);
+        let vectors = estimate.value(&Total::of(&sums.0), vertex, 1.0);
         for k in 0..3 {
             assert!((vectors[5][0][k] + direction[k] / divisor).abs() < 1e-3, "{vectors:?}");
         }
@@ -92,7 +92,7 @@ fn the_printed_estimator_treats_borders_as_printed() {
         [((1.0, 1.0), [1, 1, 2], 1.0), ((0.2, 1.0), [0, 1, 2], 2.0), ((0.2, 0.2), [0, 0, 2], 4.0)]
     {
         let sums = deposit(&estimate, &[through(place.0, place.1)]);
-        let found = estimate.value(&sums.0, CELLS.index(at), 1.0)[5][0][2];
+        let found = estimate.value(&Total::of(&sums.0), CELLS.index(at), 1.0)[5][0][2];
         assert!((found + share).abs() < 1e-3, "{found} at {at:?}");
     }
 }

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::{RadianceTracks, VectorTracks};
-use crate::accumulate::{MAX_QUANTA, Sums};
+use crate::accumulate::{MAX_QUANTA, Sums, Total};
 use crate::dual::Boxes;
 use crate::estimate::{Estimate, Flight};
 use crate::region::Regions;
@@ -29,7 +29,7 @@ fn a_flight_adds_its_length_to_the_three_hemispheres_it_comes_from() {
     let direction = Vec3::new(0.6, -0.8, 0.0);
     let power = Vec3::new(1.0, 0.5, 0.25);
     estimate.deposit(&Flight { origin: Vec3::new(2.1, 4.0, 3.0), direction, length: 2.0, power }, &mut sums);
-    let vectors = estimate.value(&sums.0, 1, 64.0);
+    let vectors = estimate.value(&Total::of(&sums.0), 1, 64.0);
     // Each deposit is rounded to 2^-22 of the next power of two above the diagonal, 16; over a volume of 64.
     let quantum = 64.0 * 16.0 / 64.0 / 4_194_304.0;
     for (h, hemisphere) in vectors.iter().enumerate() {
@@ -43,7 +43,7 @@ fn a_flight_adds_its_length_to_the_three_hemispheres_it_comes_from() {
         }
     }
     for other in [0, 2, 3, 4, 5] {
-        assert_eq!(estimate.value(&sums.0, other, 64.0), ivg_grid::HemisphereVectors::default());
+        assert_eq!(estimate.value(&Total::of(&sums.0), other, 64.0), ivg_grid::HemisphereVectors::default());
     }
 }
 
@@ -59,7 +59,7 @@ fn a_flight_adds_its_length_to_the_nine_harmonics_of_where_it_comes_from() {
     let power = Vec3::new(1.0, 0.5, 0.25);
     let flight = Flight { origin: Vec3::new(2.1, 3.9, 3.0), direction, length: 0.5, power };
     estimate.deposit(&flight, &mut sums);
-    let radiance = estimate.value(&sums.0, 1, 64.0);
+    let radiance = estimate.value(&Total::of(&sums.0), 1, 64.0);
     // As in the test above.
     let quantum = 64.0 * 16.0 / 64.0 / 4_194_304.0;
     let expected = ivg_grid::harmonics::basis(-direction.as_dvec3());
@@ -70,7 +70,7 @@ fn a_flight_adds_its_length_to_the_nine_harmonics_of_where_it_comes_from() {
         }
     }
     for other in [0, 2, 3, 4, 5] {
-        assert_eq!(estimate.value(&sums.0, other, 64.0), ivg_grid::RadianceHarmonics::default());
+        assert_eq!(estimate.value(&Total::of(&sums.0), other, 64.0), ivg_grid::RadianceHarmonics::default());
     }
 }
 
@@ -109,6 +109,9 @@ fn many_cells_in_one_flight_are_all_added() {
     estimate.deposit(&flight, &mut sums);
     for vertex in 0..300 {
         // Distances near 300 are rounded to 2^-16.
-        assert!((estimate.value(&sums.0, vertex, 1.0)[1][0][0] + 1.0).abs() < 1e-4, "cell {vertex}");
+        assert!(
+            (estimate.value(&Total::of(&sums.0), vertex, 1.0)[1][0][0] + 1.0).abs() < 1e-4,
+            "cell {vertex}"
+        );
     }
 }

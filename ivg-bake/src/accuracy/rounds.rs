@@ -1,0 +1,408 @@
+//! Photons in rounds until the grid is as accurate as was asked for.
+//!
+//! A round is 32 batches of equal size, 16 pairs, and ends with a look at noise and bias. How many photons the next one has
+//! follows from the noise that is left, at most four times as many as all before. The bounds at look k may be wrong with
+//! probability α / k(k + 1), so that stopping at the first look that is good enough does not spoil the confidence.
+//!
+//! Then come the vertices that are noisy measured by their own brightness, which the grid as a whole does not show: a dim
+//! room beside a bright one. They are gathered by path tracing; so are the vertices next to geometry, if their bias
+//! alone is too large.
+
+use std::collections::BTreeMap;
+
+use ivg_grid::GridValues;
+
+use super::noise::Noise;
+use super::probes::{Bias, Probes, change};
+use super::{AccuracyReport, EndedBy, Simulated, beyond};
+use crate::bake::Job;
+use crate::estimate::Estimate;
+use crate::estimate::held::{Held, energy};
+use crate::estimate::vertex_gather::{Enough, VertexGather};
+use crate::tally::{PHOTONS_A_PIECE, Photons, Tally};
+use crate::workers::{Workers, map};
+use crate::{BakeError, BakeStage};
+
+/// Batches of a round.
+const BATCHES: u64 = 32;
+
+/// Largest and smallest number of photons after a round, relative to that before it.
+const GROWTH: (f64, f64) = (1.25, 4.0);
+
+/// More photons than seem needed, so that chance does not make another round necessary.
+const MARGIN: f64 = 1.05;
+
+/// Vertices that the bias is measured at first, and at most.
+const PROBES: (usize, usize) = (96, 768);
+
+/// Noise at which bias is first looked at, relative to the error asked for.
+const NOISE_BEFORE_PROBES: f64 = 2.0;
+
+/// Most paths of a vertex that is gathered to measure bias, whose variance is subtracted.
+const PROBE_PATHS: u32 = 1 << 15;
+
+/// Most paths of a vertex that is gathered into the grid.
+const MOST_PATHS: u32 = 1 << 17;
+
+/// Share of the squared error asked for that bias may take before something else than photons is tried.
+const MOST_BIAS: f64 = 0.7;
+
+/// A vertex is too noisy beyond so many times the error asked for, relative to its own brightness.
+const VERTEX_NOISE: f64 = 4.0;
+
+/// Brightness of a vertex counts as at least this share of the grid's root mean square.
+const DIMMEST: f64 = 0.01;
+
+/// Share of the squared error asked for, less the bias of other vertices, that those gathered next to geometry may add.
+const GATHERED_NOISE: f64 = 0.4;
+
+/// Vertices gathered between two questions whether the time is up.
+const BLOCK: usize = 256;
+
+/// Traces photons until the relative error is `asked` or the options' photons are spent.
+pub(crate) fn run<E>(job: &Job<'_>, estimate: &E, asked: f64) -> Result<Simulated, BakeError>
+where
+    E: Estimate<Value: Held>,
+    GridValues: From<Vec<E::Value>>,
+{
+    let vertices = job.ready.cells.len();
+    let mut rounds = Rounds {
+        job,
+        asked,
+        tally: Tally::new(&job.tracer, estimate, job.workers.threads),
+        noise: Noise::new(vertices),
+        probes: None,
+        gathered: BTreeMap::new(),
+        touched: 0,
+        looks: 0,
+    };
+    let (ended_by, look) = rounds.until_good()?;
+    rounds.finish(ended_by, look)
+}
+
+struct Rounds<'a, E> {
+    job: &'a Job<'a>,
+    asked: f64,
+    tally: Tally<'a, E>,
+    noise: Noise,
+    probes: Option<Probes>,
+    /// Vertices that are to hold gathered light.
+    gathered: BTreeMap<usize, VertexGather>,
+    /// How many of them lie next to geometry.
+    touched: usize,
+    looks: u32,
+}
+
+/// Squares of errors and of the light itself, sums over vertices and axes \[(W/m²)²\].
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    signal: f64,
+    noise: f64,
+    noise_bound: f64,
+    bias: f64,
+    bias_bound: f64,
+}
+
+impl Look {
+    fn relative(&self, squared: f64) -> f64 {
+        if self.signal > 0.0 { (squared / self.signal).sqrt() } else { 0.0 }
+    }
+
+    fn reached(&self) -> f64 {
+        self.relative(self.noise_bound + self.bias_bound)
+    }
+}
+
+impl<E> Rounds<'_, E>
+where
+    E: Estimate<Value: Held>,
+    GridValues: From<Vec<E::Value>>,
+{
+    fn until_good(&mut self) -> Result<(EndedBy, Look), BakeError> {
+        let most = self.job.photons;
+        if most < BATCHES {
+            return Err(BakeError::FewPhotons { photons: most, least: BATCHES });
+        }
+        let vertices = self.job.ready.cells.len() as u64;
+        // Reading the grid after each batch takes the time of about a photon for four vertices.
+        let smallest = PHOTONS_A_PIECE.max(vertices.next_multiple_of(PHOTONS_A_PIECE));
+        let mut next = BATCHES * smallest;
+        loop {
+            let stopped = self.trace(next)?;
+            let spent = most - self.tally.photons() < BATCHES;
+            let last = stopped || spent;
+            let mut look = self.look()?;
+            if self.probes.is_none()
+                && (last || look.relative(look.noise) <= NOISE_BEFORE_PROBES * self.asked)
+            {
+                self.probe(PROBES.0, &look)?;
+                look = self.look_again()?;
+            }
+            let allowed = self.asked.powi(2) * look.signal;
+            while self.probes.is_some() && look.bias_bound > MOST_BIAS * allowed && !last {
+                let uncertain = look.bias < 0.5 * allowed;
+                if uncertain && self.probes.as_ref().is_some_and(|p| p.can_grow() && p.len() < PROBES.1) {
+                    let more = self.probes.as_ref().map_or(0, Probes::len);
+                    self.probe(more, &look)?;
+                } else if !self.touched_hold_gathered() && self.touched_help(&look)? {
+                    self.gather_touched(&look)?;
+                } else {
+                    break;
+                }
+                look = self.look_again()?;
+            }
+            let good = self.probes.is_some() && look.noise_bound + look.bias_bound <= allowed;
+            let ended = match (good, stopped, spent) {
+                (true, ..) => Some(EndedBy::Accuracy),
+                (_, true, _) => Some(EndedBy::Monitor),
+                (_, _, true) => Some(EndedBy::Photons),
+                _ if self.probes.is_some() && look.bias >= allowed => Some(EndedBy::Bias),
+                _ => None,
+            };
+            if let Some(ended) = ended {
+                return Ok((ended, look));
+            }
+            next = self.next(&look, allowed);
+        }
+    }
+
+    /// Photons after the next round.
+    fn next(&self, look: &Look, allowed: f64) -> u64 {
+        let wanted = if self.probes.is_some() {
+            (allowed - look.bias_bound).max(0.1 * allowed)
+        } else {
+            NOISE_BEFORE_PROBES.powi(2) * allowed * 0.5
+        };
+        let factor = (MARGIN * look.noise_bound / wanted).clamp(GROWTH.0, GROWTH.1);
+        (self.tally.photons() as f64 * factor) as u64
+    }
+
+    /// Traces a round up to about `next` photons and says whether the monitor had enough.
+    fn trace(&mut self, next: u64) -> Result<bool, BakeError> {
+        self.job.workers.monitor.stage(BakeStage::Photons);
+        let first = self.tally.photons();
+        let next = next.min(self.job.photons);
+        let batch = (next - first) / BATCHES;
+        // Whole pieces keep the threads busy; the last of the photons allowed are spent as they are.
+        let whole = batch / PHOTONS_A_PIECE * PHOTONS_A_PIECE;
+        let batch = if whole > 0 && next < self.job.photons { whole } else { batch };
+        let workers = Workers { total_photons: first + BATCHES * batch, ..self.job.workers };
+        for pair in 0..BATCHES / 2 {
+            for half in 0..2 {
+                let from = first + (2 * pair + half) * batch;
+                self.tally.trace(Photons::all(from, from + batch), &workers)?;
+                let estimate = self.tally.estimate;
+                let total = self.tally.total();
+                if half == 0 {
+                    self.noise.note_first(estimate, &total, &workers)?;
+                } else {
+                    self.noise.note_second(estimate, &total, batch, &workers)?;
+                }
+            }
+            // Noise can be told from two samples.
+            if self.noise.pairs() > 1 && workers.monitor.enough() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// A new look at noise and bias.
+    fn look(&mut self) -> Result<Look, BakeError> {
+        self.looks += 1;
+        self.look_again()
+    }
+
+    /// Square of what a photon of unit power stands for \[W²/m⁴\], for all photons traced.
+    fn unit(&self) -> f64 {
+        (self.job.power() / self.tally.photons() as f64).powi(2)
+    }
+
+    /// The same look, after something has been gathered.
+    fn look_again(&mut self) -> Result<Look, BakeError> {
+        let photons = self.tally.photons() as f64;
+        let unit = self.unit();
+        let estimate = self.tally.estimate;
+        let total = self.tally.total();
+        let power = self.job.power() / photons;
+        let energies = map(&self.job.workers, self.job.ready.cells.len(), |vertex| {
+            energy(&estimate.value(&total, vertex, power).axes())
+        })?;
+        // Vertices that hold gathered light have its noise instead of that of photons.
+        let all: f64 = (0..energies.len()).map(|vertex| self.noise.of_vertex(vertex)).sum();
+        let replaced: f64 = self.gathered.keys().map(|&vertex| self.noise.of_vertex(vertex)).sum();
+        let kept = if all > 0.0 { 1.0 - replaced / all } else { 1.0 };
+        let of_gathered: f64 = self.gathered.values().map(|gather| gather.variance).sum();
+        let factor = unit * photons * kept;
+        let noise = self.noise.variance() * factor + of_gathered;
+        let noise_bound = self.noise.bound(0.5 * beyond(self.looks)) * factor + of_gathered;
+        let signal = (energies.iter().sum::<f64>() - self.noise.variance() * unit * photons).max(0.0);
+        let bias = self.bias(false)?;
+        Ok(Look {
+            signal,
+            noise,
+            noise_bound,
+            bias: bias.map_or(0.0, |bias| bias.squared.max(0.0)),
+            bias_bound: bias.map_or(0.0, |bias| bias.bound(0.5 * beyond(self.looks))),
+        })
+    }
+
+    /// How well a vertex is to be gathered if the variances of all together may be `squared`.
+    fn tolerance(&self, squared: f64) -> Enough {
+        let counted = self.job.counted().count().max(1) as f64;
+        Enough::Variance { variance: squared / counted, most: PROBE_PATHS }
+    }
+
+    /// Gathers light at `more` vertices to tell the bias.
+    fn probe(&mut self, more: usize, look: &Look) -> Result<(), BakeError> {
+        let job = self.job;
+        job.workers.monitor.stage(BakeStage::Gathering);
+        let enough = self.tolerance(self.asked.powi(2) * look.signal);
+        let mut probes = match self.probes.take() {
+            Some(probes) => probes,
+            None => self.strata()?,
+        };
+        let (stage, eyes) = (&job.ready.stage, &job.surroundings.eyes);
+        probes.gather::<E::Value>(more, stage, eyes, job.seed(), enough, &job.workers)?;
+        self.probes = Some(probes);
+        Ok(())
+    }
+
+    fn strata(&mut self) -> Result<Probes, BakeError> {
+        let job = self.job;
+        let (cells, surroundings) = (&job.ready.cells, job.surroundings);
+        let estimate = self.tally.estimate;
+        let total = self.tally.total();
+        let axes = |vertex: usize| estimate.value(&total, vertex, 1.0).axes();
+        let changes = map(&job.workers, cells.len(), |vertex| {
+            let neighbours = surroundings.open_neighbours(cells, vertex);
+            change(&axes(vertex), neighbours.map(axes))
+        })?;
+        let touched = |vertex| surroundings.is_touched(vertex);
+        Ok(Probes::new(job.counted(), job.seed(), touched, |vertex| changes[vertex]))
+    }
+
+    fn touched_hold_gathered(&self) -> bool {
+        self.probes.as_ref().is_some_and(Probes::touched_hold_gathered)
+    }
+
+    /// Whether gathering at the vertices next to geometry would leave little enough bias.
+    fn touched_help(&mut self, look: &Look) -> Result<bool, BakeError> {
+        let of_touched = self.bias(true)?.map_or(0.0, |bias| bias.squared);
+        Ok(look.bias - of_touched < MOST_BIAS * self.asked.powi(2) * look.signal)
+    }
+
+    fn gather_touched(&mut self, look: &Look) -> Result<(), BakeError> {
+        let job = self.job;
+        let touched: Vec<usize> =
+            job.counted().filter(|&vertex| job.surroundings.is_touched(vertex)).collect();
+        let of_touched = self.bias(true)?.map_or(0.0, |bias| bias.squared.max(0.0));
+        let allowed = self.asked.powi(2) * look.signal - (look.bias - of_touched).max(0.0);
+        let variance = GATHERED_NOISE * allowed / touched.len().max(1) as f64;
+        let enough = Enough::Variance { variance, most: MOST_PATHS };
+        let wanted: Vec<_> = touched.iter().map(|&vertex| (vertex, enough)).collect();
+        self.touched = self.gather(&wanted)?;
+        if self.touched == touched.len()
+            && let Some(probes) = &mut self.probes
+        {
+            probes.touched_are_gathered();
+        }
+        Ok(())
+    }
+
+    /// Gathers light at vertices into the grid until there are no more of them or the monitor has enough; says how many.
+    fn gather(&mut self, vertices: &[(usize, Enough)]) -> Result<usize, BakeError> {
+        let job = self.job;
+        job.workers.monitor.stage(BakeStage::Gathering);
+        let mut done = 0;
+        for block in vertices.chunks(BLOCK) {
+            if done > 0 && job.workers.monitor.enough() {
+                break;
+            }
+            let gathers = map(&job.workers, block.len(), |n| {
+                let (vertex, enough) = block[n];
+                job.ready.stage.gather::<E::Value>(job.surroundings.eyes[vertex], vertex, job.seed(), enough)
+            })?;
+            done += block.len();
+            self.gathered.extend(block.iter().map(|(vertex, _)| *vertex).zip(gathers));
+        }
+        Ok(done)
+    }
+
+    /// Vertices too noisy for their own brightness, and how well they are to be gathered.
+    fn noisy(&mut self, look: &Look) -> Result<Vec<(usize, Enough)>, BakeError> {
+        let photons = self.tally.photons() as f64;
+        let (unit, power) = (self.unit(), self.job.power() / photons);
+        let dimmest = DIMMEST.powi(2) * look.signal / self.job.counted().count().max(1) as f64;
+        let most = (VERTEX_NOISE * self.asked).powi(2);
+        let estimate = self.tally.estimate;
+        let total = self.tally.total();
+        let (noise, gathered) = (&self.noise, &self.gathered);
+        let vertices: Vec<usize> = self.job.counted().filter(|v| !gathered.contains_key(v)).collect();
+        let found = map(&self.job.workers, vertices.len(), |n| {
+            let vertex = vertices[n];
+            let square = energy(&estimate.value(&total, vertex, power).axes());
+            let variance = noise.of_vertex(vertex) * unit * photons;
+            let allowed = most * (square - variance).max(dimmest);
+            // No photon at all says nothing about how dark it is.
+            (variance > allowed || square == 0.0 && look.signal > 0.0)
+                .then_some((vertex, Enough::Variance { variance: allowed, most: MOST_PATHS }))
+        })?;
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    /// Gathers what is too noisy, and makes the grid and the report.
+    fn finish(mut self, ended_by: EndedBy, look: Look) -> Result<Simulated, BakeError> {
+        let noisy = self.noisy(&look)?;
+        let converged = matches!(ended_by, EndedBy::Accuracy | EndedBy::Bias);
+        let gathered_noisy = if converged && !noisy.is_empty() { self.gather(&noisy)? } else { 0 };
+        let look = self.look_again()?;
+        let probes = self.probes.as_ref();
+        let into_grid: u64 = self.gathered.values().map(|gather| u64::from(gather.paths)).sum();
+        let report = AccuracyReport {
+            asked: self.asked,
+            reached: look.reached(),
+            noise: look.relative(look.noise),
+            bias: look.relative(look.bias),
+            ended_by,
+            batches: 2 * self.noise.pairs(),
+            looks: self.looks,
+            vertices: self.job.counted().count(),
+            probes: probes.map_or(0, Probes::len),
+            gathered_near_surfaces: self.touched,
+            gathered_noisy,
+            noisy: noisy.len() - gathered_noisy,
+            paths: into_grid + probes.map_or(0, Probes::paths),
+        };
+        drop(self.noise);
+        let estimate = self.tally.estimate;
+        let traced = self.tally.finish();
+        let power = self.job.power() / traced.photons as f64;
+        let total = crate::accumulate::Total::of(&traced.sums);
+        let mut values: Vec<E::Value> =
+            (0..self.job.ready.cells.len()).map(|vertex| estimate.value(&total, vertex, power)).collect();
+        for (vertex, gather) in &self.gathered {
+            values[*vertex] = E::Value::gathered(&gather.numbers);
+        }
+        Ok(Simulated {
+            values: values.into(),
+            books: traced.books,
+            photons: traced.photons,
+            paths: report.paths,
+            accuracy: Some(report),
+        })
+    }
+
+    fn bias(&mut self, only_touched: bool) -> Result<Option<Bias>, BakeError> {
+        let Some(probes) = &self.probes else { return Ok(None) };
+        let photons = self.tally.photons() as f64;
+        let (unit, power) = (self.unit(), self.job.power() / photons);
+        let estimate = self.tally.estimate;
+        let total = self.tally.total();
+        Ok(Some(probes.bias(
+            |vertex| estimate.value(&total, vertex, power).axes(),
+            |vertex| self.noise.of_vertex(vertex) * unit * photons,
+            only_touched,
+        )))
+    }
+}
