@@ -200,8 +200,7 @@ pub fn decode_all<A: Answer>(
 ///
 /// The first rule that it breaks; truncated if it is valid as far as it goes.
 pub fn check(bytes: &[u8], limits: &Limits) -> Result<(), Error> {
-    let mut replay = Replay::default();
-    decode_all(bytes, limits, |event| replay.accept(&event).map(drop))
+    Replay::from_file(bytes, limits).map(drop)
 }
 
 #[cfg(test)]

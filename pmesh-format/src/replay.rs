@@ -14,12 +14,12 @@ use ivg_wire::Error;
 use crate::attributes::Attributes;
 use crate::code::codes;
 use crate::coded::State;
-use crate::decode::{Event, decode_all};
+use crate::decode::Event;
 use crate::header::Header;
-use crate::limits::Limits;
 use crate::material::material_names;
 use crate::mesh::{IndexedMesh, Wedges};
 use crate::packet::Packet;
+use crate::storage::Mode;
 use crate::wire::MATERIALS;
 
 mod arrays;
@@ -34,7 +34,7 @@ mod whole;
 pub(crate) use descent::{Descendants, Descent};
 use steps::Steps;
 pub(crate) use switch::DEPTHS_A_BYTE;
-use touched::Touched;
+use touched::{Touched, faces_of};
 
 /// A mesh that can be shown at any number of vertices that has arrived.
 ///
@@ -150,23 +150,14 @@ impl Replay {
         let faces = self.face_count();
         self.take(packet)?;
         let earlier = packet.entry().faces.start;
+        if self.header.mode == Mode::Raw && from == packet.entry().vertices.start {
+            // Nothing has changed but what the packet says, in order.
+            let changed = faces_of(&self.switched, faces, self.face_count());
+            return Ok(LevelChange { from, to: self.level, changed });
+        }
         self.touched.resize(earlier as usize, self.header.face_count as usize);
         self.switched.iter().for_each(|slot| self.touched.mark(slot / 3));
         Ok(self.report(from, faces))
-    }
-
-    /// Reads a whole file and goes to its finest level, without saying what each packet changes.
-    ///
-    /// # Errors
-    ///
-    /// The first rule that the file breaks; truncated if it is valid as far as it goes.
-    pub fn from_file(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
-        let mut replay = Self::default();
-        decode_all(bytes, limits, |event| match event {
-            Event::Packet(packet) => replay.take(&packet),
-            other => replay.accept(&other).map(drop),
-        })?;
-        Ok(replay)
     }
 
     /// Takes in the next packet; the level is the highest then.

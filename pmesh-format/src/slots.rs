@@ -204,7 +204,7 @@ impl Slots {
             self.unused = 0;
         }
         let start = self.pool.len();
-        reserve(&mut self.pool, room, usize::MAX);
+        reserve(&mut self.pool, room, 2 * start + room);
         self.pool.resize(start + room, 0);
         start
     }

@@ -19,8 +19,9 @@ pub(crate) struct Descent {
     roots: Vec<[u32; 2]>,
     /// For each wedge of the packet: the one before it that descends from the same, or less than `first`.
     before: Vec<u32>,
-    /// Places in the packet of wedges that are not the first to descend from theirs.
+    /// Places in the packet of wedges that are not the first to descend from theirs: so many.
     further: Vec<u32>,
+    several: usize,
     /// Groups: how many, then the wedges, ascending.
     groups: Vec<u32>,
     /// The greatest depth.
@@ -42,7 +43,7 @@ impl Descent {
     pub(crate) fn find(&mut self, first: u32, targets: &[u32], all: bool, total: usize) {
         let count = targets.len();
         self.first = first;
-        self.further.clear();
+        self.several = 0;
         self.roots.clear();
         self.roots.reserve_exact(count);
         let mut deepest = 0;
@@ -68,20 +69,22 @@ impl Descent {
         let first = *first;
         let count = roots.len();
         resize(of, first as usize, total, 0);
-        for scratch in [&mut *before, &mut *further] {
-            scratch.clear();
-            scratch.reserve_exact(count);
-            scratch.resize(count, 0);
+        before.clear();
+        before.reserve_exact(count);
+        if further.len() < count {
+            reserve(further, count - further.len(), total);
+            further.resize(count, 0);
         }
         let mut several = 0;
-        for ((wedge, &[root, _]), before) in (first..).zip(&*roots).zip(before.iter_mut()) {
-            *before = core::mem::replace(&mut of[root as usize], wedge);
+        for (wedge, &[root, _]) in (first..).zip(&*roots) {
+            let other = core::mem::replace(&mut of[root as usize], wedge);
+            before.push(other);
             further[several] = wedge - first;
-            several += usize::from(*before >= first);
+            several += usize::from(other >= first);
         }
-        further.truncate(several);
+        self.several = several;
         groups.clear();
-        for &place in further.iter().rev() {
+        for &place in further[..several].iter().rev() {
             let of = &mut of[roots[place as usize][0] as usize];
             if *of != first + place {
                 // Not the last of its group, which is there already.
@@ -101,6 +104,11 @@ impl Descent {
             groups[start + 1..].reverse();
             *of = GROUP | start as u32;
         }
+    }
+
+    /// Makes room for packets of a mesh with that many wedges.
+    pub(super) fn reserve(&mut self, wedges: usize) {
+        self.of.reserve_exact(wedges);
     }
 
     /// The first wedge of the packet that becomes another one.
@@ -156,7 +164,7 @@ impl Descent {
     /// Forgets the packet. What an entry of a packet that is in names is less than the first wedge of the next, unless it is a
     /// group.
     pub(crate) fn forget(&mut self, refused: bool) {
-        let Self { of, roots, further, .. } = self;
+        let Self { of, roots, further, several, .. } = self;
         let mut clear = |root: u32| {
             if let Some(entry) = of.get_mut(root as usize) {
                 *entry = 0;
@@ -165,10 +173,10 @@ impl Descent {
         if refused {
             roots.iter().for_each(|&[root, _]| clear(root));
         } else {
-            further.iter().for_each(|&place| clear(roots[place as usize][0]));
+            further[..*several].iter().for_each(|&place| clear(roots[place as usize][0]));
         }
         roots.clear();
-        further.clear();
+        *several = 0;
     }
 }
 

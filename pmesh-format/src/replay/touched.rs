@@ -62,3 +62,35 @@ impl Touched {
         ranges
     }
 }
+
+/// Slots that are looked at together.
+const BLOCK: usize = 256;
+
+/// The faces of ascending slots, then all from `end` to `new_end`, which are later, as ascending ranges.
+pub(super) fn faces_of(slots: &[u32], end: u32, new_end: u32) -> Vec<Range<u32>> {
+    let mut ranges: Vec<Range<u32>> = Vec::new();
+    // Ranges are begun and made longer without a branch, since nothing tells in advance which it will be.
+    let mut found = [const { 0..0 }; BLOCK + 1];
+    for block in slots.chunks(BLOCK) {
+        let mut last = 0;
+        found[0] = ranges.pop().unwrap_or(0..0);
+        for slot in block {
+            let face = slot / 3;
+            let Range { start, end } = found[last];
+            let new = face > end || (end == 0);
+            last += usize::from(new);
+            found[last] = if new { face } else { start }..face + 1;
+        }
+        let first = usize::from(found[0].is_empty());
+        ranges.extend_from_slice(&found[first..=last]);
+    }
+    match ranges.last_mut() {
+        _ if end == new_end => {}
+        Some(last) if last.end == end => last.end = new_end,
+        _ => ranges.push(end..new_end),
+    }
+    ranges
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,12 +1,57 @@
-//! The mesh with its collapse order, as an encoder takes it.
+//! Whole files: read at once, and as an encoder takes them.
 
 use alloc::vec::Vec;
 
+use ivg_wire::Error;
+
 use super::Replay;
+use crate::decode::{Event, decode_all};
+use crate::header::Header;
+use crate::limits::Limits;
 use crate::mesh::Wedges;
 use crate::progressive::ProgressiveMesh;
+use crate::storage::Mode;
 
 impl Replay {
+    /// Reads a whole file and goes to its finest level, without saying what each packet changes.
+    ///
+    /// # Errors
+    ///
+    /// The first rule that the file breaks; truncated if it is valid as far as it goes.
+    pub fn from_file(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
+        let mut replay = Self::default();
+        decode_all(bytes, limits, |event| match event {
+            Event::Packet(packet) => replay.take(&packet),
+            Event::Header(header) => {
+                replay = Self::new(header);
+                if header.file_bytes <= bytes.len() as u64 {
+                    replay.reserve_all();
+                }
+                Ok(())
+            }
+            other => replay.accept(&other).map(drop),
+        })?;
+        Ok(replay)
+    }
+
+    /// Makes room for all packets. They must be there: the directory was checked for packets as long as what they bring.
+    fn reserve_all(&mut self) {
+        let Header { vertex_count, wedge_count, face_count, base_vertices, attributes, .. } = self.header;
+        let [vertices, wedges, faces] = [vertex_count, wedge_count, face_count].map(|count| count as usize);
+        let on = |there: bool, count: usize| if there { count } else { 0 };
+        self.positions.reserve_exact(vertices);
+        self.normals.reserve_exact(on(attributes.normals, wedges));
+        self.uvs.reserve_exact(on(attributes.uvs, wedges));
+        self.colours.reserve_exact(on(attributes.colours, wedges));
+        self.corners.reserve_exact(faces);
+        self.materials.reserve_exact(on(attributes.materials, faces));
+        self.parents.reserve_exact(vertices - base_vertices as usize);
+        self.wedge_ends.reserve_exact(on(attributes.seams, vertices));
+        self.wedge_vertices.reserve_exact(on(attributes.seams, wedges));
+        self.wedge_targets.reserve_exact(on(attributes.seams, wedges));
+        self.descent.reserve(on(self.header.mode == Mode::Raw, wedges));
+    }
+
     /// The mesh with its collapse order, to be written in another way; `None` until all packets are in. The level stays.
     ///
     /// Each error is that of the packet: the file has no others.
