@@ -61,6 +61,12 @@ impl SceneBuilder {
         (self.scene.materials.len() - 1) as u32
     }
 
+    /// Adds a material of any kind and returns its index.
+    pub fn any_material(&mut self, material: Material) -> u32 {
+        self.scene.materials.push(material);
+        (self.scene.materials.len() - 1) as u32
+    }
+
     /// Adds a triangle.
     pub fn triangle(&mut self, corners: [Vec3; 3], material: u32) {
         let first = self.mesh.positions.len() as u32;
@@ -136,7 +142,7 @@ impl SceneBuilder {
     }
 }
 
-/// A plan for diffuse indirect light, and a sky where the scene has one, followed for `max_bounces` reflections.
+/// A plan for diffuse indirect light, and mirrors, glass and a sky where the scene has them, followed for `max_bounces` reflections.
 #[must_use]
 pub fn plan(scene: &Scene, max_bounces: u32) -> EffectPlan {
     let planned = |effect, needed| PlannedEffect {
@@ -146,7 +152,12 @@ pub fn plan(scene: &Scene, max_bounces: u32) -> EffectPlan {
         cost: None,
     };
     EffectPlan {
-        effects: vec![planned(Effect::DiffuseIndirect, true), planned(Effect::Sky, scene.sky.is_some())],
+        effects: vec![
+            planned(Effect::DiffuseIndirect, true),
+            planned(Effect::Mirrors, scene.materials.iter().any(|m| m.specular > 0.0)),
+            planned(Effect::Glass, scene.materials.iter().any(|m| m.transmission > 0.0)),
+            planned(Effect::Sky, scene.sky.is_some()),
+        ],
         max_bounces,
         energy_cutoff: 1e-3,
     }
@@ -202,6 +213,59 @@ pub fn sky_furnace(photons: u64) -> Result<Outcome, BakeError> {
     compare_axes("white object under an even sky".into(), PI, |seed| {
         bake(&scene, &flat, &plan, &BakeOptions { seed, ..options.clone() }, &Silent)
     })
+}
+
+/// A ball of radius 0.4 m under an even sky of 1 W/(m² sr) that sends back a share `albedo` of the light, in whatever way.
+///
+/// From every direction comes radiance 1, but `albedo` from where the ball is; what is missing adds up to
+/// (1 − a) π (R / D)² along the way from the ball, at a distance D from its middle, exactly. Returned is the share
+/// missing, found from the net flux at all vertices that are 0.2 m or more off the ball, less 1 − a. Means over dual cells keep such a flux up to the
+/// fourth order of their size.
+///
+/// # Errors
+///
+/// As [`bake`].
+pub fn ball_under_sky(
+    name: &str,
+    material: Material,
+    albedo: f64,
+    photons: u64,
+) -> Result<Outcome, BakeError> {
+    const RADIUS: f64 = 0.4;
+    let mut builder = SceneBuilder::default();
+    let ball = builder.any_material(material);
+    builder.sphere(Vec3::ZERO, RADIUS as f32, 4, ball, false);
+    builder.sky(1.0);
+    let (scene, flat) = builder.build();
+    let plan = plan(&scene, UNLIMITED);
+    let bounds = Some((DVec3::splat(-0.9), DVec3::splat(0.9)));
+    let values = (1..=SEEDS)
+        .map(|seed| {
+            let options = BakeOptions { dims: [10; 3], bounds, photons, seed, ..BakeOptions::default() };
+            let result = bake(&scene, &flat, &plan, &options, &Silent)?;
+            let (mut product, mut square) = (0.0, 0.0);
+            for (index, vectors) in result.grid.vectors().iter().enumerate() {
+                let [i, j, k] = result.grid.lattice().coords(index as u64);
+                let place = DVec3::from(result.grid.lattice().position(i, j, k));
+                if place.length() < RADIUS + 0.2 {
+                    continue;
+                }
+                let net = DVec3::from_array(core::array::from_fn(|axis| {
+                    f64::from(vectors[2 * axis][1][axis] + vectors[2 * axis + 1][1][axis])
+                }));
+                let missing = place * (PI * RADIUS * RADIUS / place.length().powi(3));
+                product += net.dot(missing);
+                square += missing.length_squared();
+            }
+            Ok(product / square)
+        })
+        .collect::<Result<Vec<f64>, BakeError>>()?;
+    // A ball of 2048 triangles is inside the round one by up to 0.4 % of the radius.
+    let roundness = 0.01 * (1.0 - albedo);
+    let mut found = outcome(name.into(), &values, 1.0 - albedo, 0.0);
+    let unit = if albedo < 1.0 { 1.0 - albedo } else { 1.0 };
+    (found.figure, found.bound) = (found.figure * unit, found.bound * unit + roundness);
+    Ok(found)
 }
 
 /// A spherical cavity of radius 1 m and albedo ρ with a black source in the middle: after the first reflection light is

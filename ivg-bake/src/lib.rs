@@ -16,6 +16,9 @@
 //! an irradiance vector is, is said in `spec/ivg.md`: the integral over a hemisphere of radiance times direction, pointing to
 //! where the light comes from.
 //!
+//! Surfaces reflect evenly, mirror (sharply or through facets), and let light through, as [`ivg_scene::Lobes`] mixes them; where
+//! the plan needs neither mirrors nor glass, the code that traces photons knows of neither.
+//!
 //! # Guarantees
 //!
 //! * For one release and target the result depends on scene, plan and options alone: random numbers are a function of
@@ -87,6 +90,7 @@ mod emit;
 mod error;
 mod estimate;
 mod intersect;
+mod lobes;
 mod monitor;
 mod options;
 mod overlap;

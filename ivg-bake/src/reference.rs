@@ -90,14 +90,16 @@ pub struct Picture {
 }
 
 impl<'a> Oracle<'a> {
-    /// A tracer over a scene, with its textures and its sky.
+    /// A tracer over a scene, with everything in it: textures, sky, mirrors, glass.
+    ///
+    /// What it cannot find is light of point, spot and directional lights that a mirror or a solid of glass sends on: no
+    /// path from a point meets such a light by chance. It finds it through panes.
     ///
     /// # Errors
     ///
     /// [`BakeError::NoLight`], [`BakeError::BadNumber`], [`BakeError::BadIndex`], [`BakeError::TreeTooDeep`].
     pub fn new(scene: &'a Scene, flat: &'a FlatScene) -> Result<Self, BakeError> {
-        let effects = Effects { textures: true, sky: true };
-        Ok(Self { stage: Stage::new(scene, flat, effects, None)? })
+        Ok(Self { stage: Stage::new(scene, flat, Effects::ALL, None)? })
     }
 
     /// The indirect irradiance vectors at points in world space \[m\].

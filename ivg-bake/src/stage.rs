@@ -6,6 +6,7 @@ use ivg_scene::{Effect, EffectPlan, FlatScene, Scene};
 use crate::BakeError;
 use crate::accel::TraceScene;
 use crate::emit::{Emitters, Sphere};
+use crate::lobes::LobeTable;
 use crate::space::Space;
 use crate::surface::Surfaces;
 
@@ -16,6 +17,10 @@ pub(crate) struct Stage<'a> {
     pub(crate) surfaces: Surfaces<'a>,
     pub(crate) accel: TraceScene,
     pub(crate) emitters: Emitters,
+    /// What stops sight, where that is not all that stops rays: without panes.
+    sight: Option<TraceScene>,
+    /// What stops light: without glass.
+    clear: Option<TraceScene>,
 }
 
 /// Which effects cost something only where they are simulated.
@@ -25,14 +30,29 @@ pub(crate) struct Effects {
     pub(crate) textures: bool,
     /// Light from outside.
     pub(crate) sky: bool,
+    /// Mirror reflection.
+    pub(crate) mirrors: bool,
+    /// Light that passes surfaces.
+    pub(crate) glass: bool,
 }
 
 impl Effects {
     /// What a plan asks for.
     pub(crate) fn of(plan: &EffectPlan) -> Self {
-        Self { textures: plan.needs(Effect::Textures), sky: plan.needs(Effect::Sky) }
+        Self {
+            textures: plan.needs(Effect::Textures),
+            sky: plan.needs(Effect::Sky),
+            mirrors: plan.needs(Effect::Mirrors),
+            glass: plan.needs(Effect::Glass),
+        }
     }
+
+    /// All of them.
+    pub(crate) const ALL: Self = Self { textures: true, sky: true, mirrors: true, glass: true };
 }
+
+/// Panes that light is followed through to a light; behind more there is none.
+const MOST_PANES: u32 = 64;
 
 /// Radius of the sphere that light from outside starts on, relative to half the diagonal of everything.
 const WORLD_MARGIN: f32 = 1.001;
@@ -54,11 +74,41 @@ impl<'a> Stage<'a> {
             (min, max) = (min.min(low), max.max(high));
         }
         let space = Space::new(min, max);
-        let surfaces = Surfaces::new(scene, flat, space, effects.textures)?;
+        let surfaces = Surfaces::new(scene, flat, space, effects)?;
         let accel = TraceScene::new(surfaces.triangles())?;
         let world = Sphere { centre: Vec3::ZERO, radius: space.to_bake(max).length() * WORLD_MARGIN };
         let emitters = Emitters::new(scene, &surfaces, space, world, effects.sky)?;
-        Ok(Self { space, surfaces, accel, emitters })
+        let tree = |triangles: Option<Vec<_>>| triangles.map(|t| TraceScene::new(&t)).transpose();
+        let (sight, clear) = (tree(surfaces.without_panes())?, tree(surfaces.without_glass())?);
+        Ok(Self { space, surfaces, accel, emitters, sight, clear })
+    }
+
+    /// What stops sight: all surfaces but panes. The inside of a solid of glass is apart from the air around it.
+    #[inline]
+    pub(crate) fn sight(&self) -> &TraceScene {
+        self.sight.as_ref().unwrap_or(&self.accel)
+    }
+
+    /// What stops light: all surfaces but those that let most of it through.
+    #[inline]
+    pub(crate) fn clear(&self) -> &TraceScene {
+        self.clear.as_ref().unwrap_or(&self.accel)
+    }
+
+    /// Share of light that goes straight on from `origin` along `direction` for `distance`, past panes.
+    pub(crate) fn passed(&self, lobes: &LobeTable, origin: Vec3, direction: Vec3, distance: f32) -> Vec3 {
+        let (mut share, mut origin, mut left) = (Vec3::ONE, origin, distance);
+        for _ in 0..MOST_PANES {
+            let Some(hit) = self.accel.closest_hit(origin, direction, left) else { return share };
+            share *= self.surfaces.passed_straight(lobes, &hit, direction);
+            if share == Vec3::ZERO {
+                break;
+            }
+            let point = self.surfaces.point(hit.triangle, hit.weights);
+            origin = point.origin(point.facing(direction));
+            left -= hit.distance;
+        }
+        Vec3::ZERO
     }
 }
 

@@ -5,12 +5,14 @@ use ivg_scene::{FlatScene, Material, Scene};
 
 use crate::BakeError;
 use crate::accel::Hit;
+use crate::lobes::LobeTable;
 use crate::space::Space;
+use crate::stage::Effects;
 
 /// The surfaces of a scene in bake space.
 ///
-/// Every surface is opaque and reflects on both sides with the same albedo, whatever way its triangles are wound: a
-/// wall seen from behind is a wall. [`Material::two_sided`] decides about emission only: a one-sided emitter is dark
+/// Every surface reflects on both sides in the same way, whatever way its triangles are wound: a wall seen from behind is a
+/// wall. Where the plan needs mirrors or glass and there are any, `lobes` tells what surfaces do besides reflecting evenly. [`Material::two_sided`] decides about emission only: a one-sided emitter is dark
 /// behind. A black one (a rectangle of a lights file) therefore stops light on both sides like a black panel of its
 /// size.
 #[derive(Debug)]
@@ -20,6 +22,8 @@ pub(crate) struct Surfaces<'a> {
     triangles: Vec<[Vec3; 3]>,
     normals: Vec<Vec3>,
     textured: bool,
+    /// What surfaces do with light, where some do more than reflect it evenly.
+    lobes: Option<LobeTable>,
 }
 
 /// A point of a surface, and how far its computed position may be from the true one.
@@ -44,7 +48,7 @@ const POSITION_ROUNDINGS: f32 = 7.0;
 const ORIGIN_MARGIN: f32 = 8.0;
 
 impl<'a> Surfaces<'a> {
-    /// Takes the scene's triangles into bake space. `textured`: whether albedo textures are looked up.
+    /// Takes the scene's triangles into bake space, with the `effects` that are simulated.
     ///
     /// # Errors
     ///
@@ -53,13 +57,14 @@ impl<'a> Surfaces<'a> {
         scene: &'a Scene,
         flat: &'a FlatScene,
         space: Space,
-        textured: bool,
+        effects: Effects,
     ) -> Result<Self, BakeError> {
         check(scene, flat)?;
         let place = |index: u32| space.to_bake(flat.origin + flat.positions[index as usize].as_dvec3());
         let triangles: Vec<[Vec3; 3]> = flat.triangles.iter().map(|t| t.map(place)).collect();
         let normals = triangles.iter().map(geometric_normal).collect();
-        Ok(Self { scene, flat, triangles, normals, textured })
+        let lobes = LobeTable::new(scene, flat, effects);
+        Ok(Self { scene, flat, triangles, normals, textured: effects.textures, lobes })
     }
 
     /// All triangles in bake space.
@@ -73,10 +78,46 @@ impl<'a> Surfaces<'a> {
         0.5 * (b - a).cross(c - a).length()
     }
 
+    /// What surfaces do with light besides reflecting it evenly; `None` if none does anything else.
+    #[inline]
+    pub(crate) fn lobes(&self) -> Option<&LobeTable> {
+        self.lobes.as_ref()
+    }
+
+    /// Index of the material of a triangle.
+    #[inline]
+    pub(crate) fn material_index(&self, triangle: u32) -> u32 {
+        self.flat.triangle_materials[triangle as usize]
+    }
+
     /// The material of a triangle.
     #[inline]
     pub(crate) fn material(&self, triangle: u32) -> &'a Material {
-        &self.scene.materials[self.flat.triangle_materials[triangle as usize] as usize]
+        &self.scene.materials[self.material_index(triangle) as usize]
+    }
+
+    /// The triangles that stop sight, each in its place; those that do not, panes, are points. `None` if all do.
+    pub(crate) fn without_panes(&self) -> Option<Vec<[Vec3; 3]>> {
+        let lobes = self.lobes.as_ref()?;
+        self.without(|triangle| lobes.is_pane(self.flat, triangle))
+    }
+
+    /// The triangles that stop light, each in its place; those that do not, glass, are points. `None` if all do.
+    pub(crate) fn without_glass(&self) -> Option<Vec<[Vec3; 3]>> {
+        let lobes = self.lobes.as_ref()?;
+        self.without(|triangle| lobes.lets_light_through(self.flat, triangle))
+    }
+
+    fn without(&self, which: impl Fn(usize) -> bool) -> Option<Vec<[Vec3; 3]>> {
+        let keep = |(t, corners): (usize, &[Vec3; 3])| if which(t) { [Vec3::ZERO; 3] } else { *corners };
+        let any = (0..self.triangles.len()).any(&which);
+        any.then(|| self.triangles.iter().enumerate().map(keep).collect())
+    }
+
+    /// Whether any light goes on from a hit.
+    pub(crate) fn sends_on(&self, hit: &Hit) -> bool {
+        self.albedo(hit).max_element() > 0.0
+            || self.lobes.as_ref().is_some_and(|l| l.is_more_than_diffuse(self.material_index(hit.triangle)))
     }
 
     /// The point of a triangle with barycentric `weights`.
@@ -95,16 +136,27 @@ impl<'a> Surfaces<'a> {
     pub(crate) fn albedo(&self, hit: &Hit) -> Vec3 {
         let material = self.material(hit.triangle);
         match material.albedo_texture {
-            Some(texture) if self.textured => {
-                let corners = self.flat.triangles[hit.triangle as usize];
-                let uv = corners
-                    .iter()
-                    .zip(hit.weights)
-                    .fold(Vec2::ZERO, |uv, (&corner, weight)| uv + self.flat.uvs[corner as usize] * weight);
-                material.albedo * self.scene.textures[texture as usize].sample(uv)
-            }
+            Some(texture) if self.textured => material.albedo * self.sample(texture, hit),
             _ => material.albedo,
         }
+    }
+
+    /// The colour of the albedo texture at a point of a triangle, linear RGB; white without one.
+    pub(crate) fn texture(&self, hit: &Hit) -> Vec3 {
+        match self.material(hit.triangle).albedo_texture {
+            Some(texture) if self.textured => self.sample(texture, hit),
+            _ => Vec3::ONE,
+        }
+    }
+
+    #[inline]
+    fn sample(&self, texture: u32, hit: &Hit) -> Vec3 {
+        let corners = self.flat.triangles[hit.triangle as usize];
+        let uv = corners
+            .iter()
+            .zip(hit.weights)
+            .fold(Vec2::ZERO, |uv, (&corner, weight)| uv + self.flat.uvs[corner as usize] * weight);
+        self.scene.textures[texture as usize].sample(uv)
     }
 
     /// Radiance that a triangle emits towards the unit direction `towards` \[W/(m² sr)\].
@@ -151,6 +203,11 @@ fn check(scene: &Scene, flat: &FlatScene) -> Result<(), BakeError> {
         let object = || format!("material {}", material.name);
         usable(material.albedo, 1.0, "albedo", object)?;
         usable(material.emission, f32::MAX, "emission", object)?;
+        usable(material.specular_colour * material.specular, 1.0, "mirror reflection", object)?;
+        usable(Vec3::splat(material.roughness), 1.0, "roughness", object)?;
+        usable(material.transmission_colour, 1.0, "colour of transmission", object)?;
+        usable(Vec3::splat(material.transmission), 1.0, "transmission", object)?;
+        usable(Vec3::splat(material.refractive_index - 1.0), f32::MAX, "index of refraction less 1", object)?;
     }
     if let Some(sky) = scene.sky {
         usable(sky, f32::MAX, "radiance", || "sky".into())?;

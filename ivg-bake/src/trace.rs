@@ -2,8 +2,10 @@
 
 use glam::Vec3;
 
+use crate::accel::Hit;
 use crate::accumulate::Sums;
 use crate::estimate::{Estimate, Flight};
+use crate::lobes::{LobeTable, Scattered, Way};
 use crate::sampling::hemisphere;
 use crate::sampling::rng::{Purpose, Stream, unit};
 use crate::stage::Stage;
@@ -73,8 +75,8 @@ pub(crate) struct Tracer<'a> {
 impl Tracer<'_> {
     /// Traces one photon and deposits its flights after the first; of the sky, whose light nobody else adds, the first too.
     ///
-    /// Surfaces reflect evenly (Lambert). Russian roulette goes on with the share that the brightest channel keeps, so that
-    /// the brightest channel of a photon is never more than it started with.
+    /// Russian roulette goes on with the share that the brightest channel keeps, so that the brightest channel of a photon is
+    /// never more than it started with. Scenes whose surfaces reflect evenly and nothing else run code that knows nothing else.
     #[inline]
     pub(crate) fn trace<E: Estimate>(
         &self,
@@ -83,19 +85,35 @@ impl Tracer<'_> {
         sums: &mut impl Sums,
         books: &mut Books,
     ) {
+        match self.stage.surfaces.lobes() {
+            None => self.follow(photon, estimate, sums, books, Reflect),
+            Some(lobes) => self.follow(photon, estimate, sums, books, Scatter(lobes)),
+        }
+    }
+
+    #[inline]
+    fn follow<E: Estimate>(
+        &self,
+        photon: u64,
+        estimate: &E,
+        sums: &mut impl Sums,
+        books: &mut Books,
+        meet: impl Meet,
+    ) {
         let stream = Stream::new(self.seed, photon);
         let emission = self.stage.emitters.emit(&stream);
         let (mut origin, mut direction, mut power) = (emission.origin, emission.direction, emission.power);
         let mut energy = quanta(power);
         add(&mut books.emitted, energy);
-        let mut bounce = 0;
+        let (mut bounce, mut basic) = (0, 1.0);
         loop {
             books.after_bounces[(bounce as usize).min(BOOKED_BOUNCES - 1)] += energy.iter().sum::<i128>();
             books.flights += 1;
             let hit = self.stage.accel.closest_hit(origin, direction, f32::MAX);
             if bounce > 0 || emission.deposit_first {
                 let length = hit.as_ref().map_or(f32::INFINITY, |hit| hit.distance);
-                estimate.deposit(&Flight { origin, direction, length, power }, sums);
+                estimate
+                    .deposit(&Flight { origin, direction, length, power: meet.outside(power, basic) }, sums);
             }
             let Some(hit) = hit else {
                 add(&mut books.escaped, energy);
@@ -107,7 +125,8 @@ impl Tracer<'_> {
             }
             bounce += 1;
             let words = stream.words(bounce, Purpose::Reflection);
-            let reflected = power * self.stage.surfaces.albedo(&hit);
+            let (colour, next) = meet.meet(self.stage, &hit, direction, words, (&stream, bounce));
+            let reflected = power * colour;
             let brightest = power.max_element();
             // Below one quantum of the books a photon carries nothing that any sum would notice.
             let kept =
@@ -120,11 +139,116 @@ impl Tracer<'_> {
             let left = quanta(power);
             add(&mut books.absorbed, core::array::from_fn(|c| energy[c] - left[c]));
             energy = left;
-            let point = self.stage.surfaces.point(hit.triangle, hit.weights);
-            let side = point.facing(-direction);
-            origin = point.origin(side);
-            direction = hemisphere::cosine(side, [unit(words[1]), unit(words[2])]);
+            (origin, direction) = meet.leave(self.stage, &hit, direction, words, next, &mut basic);
         }
+    }
+}
+
+/// What happens to photons where they meet surfaces.
+trait Meet: Copy {
+    /// What is known about the way on before it is certain that there is one.
+    type Next;
+
+    /// What is kept of light that flies along `direction` up to `hit`, each channel in [0, 1].
+    fn meet(
+        self,
+        stage: &Stage<'_>,
+        hit: &Hit,
+        direction: Vec3,
+        words: [u32; 4],
+        numbers: (&Stream, u32),
+    ) -> (Vec3, Self::Next);
+
+    /// Where it flies on: origin and direction. `basic` is the inverse square of the index of refraction around it, before and
+    /// after.
+    fn leave(
+        self,
+        stage: &Stage<'_>,
+        hit: &Hit,
+        direction: Vec3,
+        words: [u32; 4],
+        next: Self::Next,
+        basic: &mut f32,
+    ) -> (Vec3, Vec3);
+
+    /// The power that counts for the grid: inside glass radiance is greater by the square of the index of refraction, and even
+    /// light would not look even.
+    fn outside(self, power: Vec3, basic: f32) -> Vec3;
+}
+
+/// Even reflection (Lambert) and nothing else.
+#[derive(Clone, Copy)]
+struct Reflect;
+
+impl Meet for Reflect {
+    type Next = ();
+
+    #[inline]
+    fn meet(self, stage: &Stage<'_>, hit: &Hit, _: Vec3, _: [u32; 4], _: (&Stream, u32)) -> (Vec3, ()) {
+        (stage.surfaces.albedo(hit), ())
+    }
+
+    #[inline]
+    fn leave(
+        self,
+        stage: &Stage<'_>,
+        hit: &Hit,
+        direction: Vec3,
+        words: [u32; 4],
+        (): (),
+        _: &mut f32,
+    ) -> (Vec3, Vec3) {
+        let point = stage.surfaces.point(hit.triangle, hit.weights);
+        let side = point.facing(-direction);
+        (point.origin(side), hemisphere::cosine(side, [unit(words[1]), unit(words[2])]))
+    }
+
+    #[inline]
+    fn outside(self, power: Vec3, _: f32) -> Vec3 {
+        power
+    }
+}
+
+/// All that surfaces do.
+#[derive(Clone, Copy)]
+struct Scatter<'a>(&'a LobeTable);
+
+impl Meet for Scatter<'_> {
+    type Next = (Vec3, Scattered);
+
+    #[inline]
+    fn meet(
+        self,
+        stage: &Stage<'_>,
+        hit: &Hit,
+        direction: Vec3,
+        words: [u32; 4],
+        numbers: (&Stream, u32),
+    ) -> (Vec3, Self::Next) {
+        let point = stage.surfaces.point(hit.triangle, hit.weights);
+        let scattered = stage.surfaces.scatter(self.0, (hit, &point), direction, words, numbers);
+        (scattered.colour, (point.origin(scattered.side), scattered))
+    }
+
+    #[inline]
+    fn leave(
+        self,
+        _: &Stage<'_>,
+        _: &Hit,
+        _: Vec3,
+        _: [u32; 4],
+        (origin, scattered): Self::Next,
+        basic: &mut f32,
+    ) -> (Vec3, Vec3) {
+        if let Way::Refracted { basic: behind } = scattered.way {
+            *basic = behind;
+        }
+        (origin, scattered.direction)
+    }
+
+    #[inline]
+    fn outside(self, power: Vec3, basic: f32) -> Vec3 {
+        power * basic
     }
 }
 

@@ -16,6 +16,9 @@
 //! vertices that see anything are valid.
 //!
 //! **Blocked edges.** The edge to the next vertex is blocked if geometry lies between the points that the two look from.
+//!
+//! Where glass is simulated, panes that let most light through are not there for any of this: one sees past them. Solids of glass
+//! stop sight, as other solids do, but not the light that is looked for.
 
 use glam::Vec3;
 
@@ -93,8 +96,10 @@ impl Surroundings {
     ///
     /// [`BakeError::Cancelled`].
     pub(crate) fn new(stage: &Stage<'_>, cells: &Boxes, workers: &Workers<'_>) -> Result<Self, BakeError> {
-        let distances = distances(stage.surfaces.triangles(), cells);
-        let sides = SidePoints::new(stage.surfaces.triangles(), cells, &distances);
+        let opaque = stage.surfaces.without_panes();
+        let triangles = opaque.as_deref().unwrap_or(stage.surfaces.triangles());
+        let distances = distances(triangles, cells);
+        let sides = SidePoints::new(triangles, cells, &distances);
         let views = map(workers, cells.len(), |vertex| stage.view(cells, vertex, distances[vertex], &sides))?;
         let any_lit = views.iter().any(|view| view.lit);
         let regions = Regions::new(views.iter().map(|view| {
@@ -120,7 +125,7 @@ impl Surroundings {
                 let next = cells.index(next);
                 // An edge lies in the two cells it joins: without geometry in them nothing can be in between.
                 let touched = distances[vertex].is_finite() || distances[next].is_finite();
-                if touched && stage.accel.occluded(eyes[vertex], eyes[next] - eyes[vertex], 1.0) {
+                if touched && stage.sight().occluded(eyes[vertex], eyes[next] - eyes[vertex], 1.0) {
                     bits |= 1 << axis;
                 }
             }
@@ -185,14 +190,14 @@ impl Stage<'_> {
         let look = |eye: Vec3| {
             let lit = self.reached(eye, vertex);
             let mask =
-                if lit { Mask::seen(&self.accel, eye, cells.corner(at), cells.step) } else { Mask::NONE };
+                if lit { Mask::seen(self.sight(), eye, cells.corner(at), cells.step) } else { Mask::NONE };
             View { eye, mask: Some(mask), lit }
         };
         let Some(points) = sides.of(vertex) else { return look(middle) };
         // The first point of each side: those that come later see one of them.
         let mut first: Vec<Vec3> = Vec::new();
         for &point in points {
-            if first.iter().all(|&other| self.accel.occluded(point, other - point, 1.0)) {
+            if first.iter().all(|&other| self.sight().occluded(point, other - point, 1.0)) {
                 first.push(point);
             }
         }
@@ -223,7 +228,7 @@ impl Stage<'_> {
             let stream = Stream::new(REACH_SEED, item);
             let u = stream.uniforms(0, Purpose::Reach);
             let direction = hemisphere::sphere([u[0], u[1]]);
-            let first = self.accel.closest_hit(point, direction, f32::MAX);
+            let first = self.clear().closest_hit(point, direction, f32::MAX);
             behind += u32::from(first.is_some_and(|hit| self.is_behind(&hit, direction)));
             found += u32::from(self.path_finds_light(point, direction, first, &stream));
             // Most vertices are settled by their first paths.
@@ -258,7 +263,7 @@ impl Stage<'_> {
             if self.surfaces.emission(hit.triangle, surface.normal, -direction).max_element() > 0.0 {
                 return true;
             }
-            if self.surfaces.albedo(&hit).max_element() <= 0.0 {
+            if !self.surfaces.sends_on(&hit) {
                 return false;
             }
             let side = surface.facing(-direction);
@@ -268,7 +273,7 @@ impl Stage<'_> {
             }
             let u = stream.uniforms(bounce, Purpose::Reach);
             direction = hemisphere::cosine(side, [u[0], u[1]]);
-            next = self.accel.closest_hit(origin, direction, f32::MAX);
+            next = self.clear().closest_hit(origin, direction, f32::MAX);
         }
         false
     }
@@ -278,7 +283,7 @@ impl Stage<'_> {
         self.emitters.arrive(point, stream, step).is_some_and(|light| {
             side.is_none_or(|side| side.dot(light.direction) > GRAZING)
                 && light.cosine > GRAZING
-                && !self.accel.occluded(point, light.direction, light.distance)
+                && !self.clear().occluded(point, light.direction, light.distance)
         })
     }
 }

@@ -1,4 +1,9 @@
-use super::{Outcome, leak_between_rooms, lit_rectangle, sky_furnace, spherical_cavity, white_furnace};
+use glam::Vec3;
+use ivg_scene::Material;
+
+use super::{
+    Outcome, ball_under_sky, leak_between_rooms, lit_rectangle, sky_furnace, spherical_cavity, white_furnace,
+};
 use crate::Estimator;
 
 #[track_caller]
@@ -27,6 +32,33 @@ fn the_printed_estimator_is_a_third_too_dark() {
 #[test]
 fn a_white_object_under_an_even_sky_disappears() {
     check(&sky_furnace(100_000).unwrap(), 0.04);
+}
+
+/// A ball that absorbs nothing cannot be told from the sky, whatever it does with the light; others are as dark as they
+/// absorb.
+#[test]
+fn balls_under_an_even_sky_are_as_dark_as_they_absorb() {
+    let plain = |albedo| Material { albedo: Vec3::splat(albedo), ..Material::default() };
+    let layer = |specular| Material { specular, roughness: 0.0, ..plain(0.0) };
+    let metal = |roughness| Material { specular: 1.0, metallic: true, roughness, ..plain(1.0) };
+    let glass = Material { transmission: 1.0, ..plain(0.0) };
+    let cases = [
+        ("black", plain(0.0), 0.0),
+        ("grey", plain(0.5), 0.5),
+        ("white", plain(1.0), 1.0),
+        ("mirror that absorbs half", layer(0.5), 0.5),
+        ("mirror", layer(1.0), 1.0),
+        ("metal", metal(0.0), 1.0),
+        ("rough metal", metal(0.5), 1.0),
+        ("very rough metal", metal(1.0), 1.0),
+        ("half metal, half white", Material { specular: 0.5, ..metal(0.3) }, 1.0),
+        ("glass", glass.clone(), 1.0),
+        ("bubble", Material { thin: true, ..glass.clone() }, 1.0),
+        ("diamond", Material { refractive_index: 2.4, ..glass }, 1.0),
+    ];
+    for (name, material, albedo) in cases {
+        check(&ball_under_sky(name, material, albedo, 80_000).unwrap(), 0.08);
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::cases::SceneBuilder;
 use crate::sampling::rng::Stream;
 use crate::stage::{Effects, Stage};
 
-const ALL: Effects = Effects { textures: false, sky: true };
+const ALL: Effects = Effects { textures: false, sky: true, mirrors: false, glass: false };
 
 /// Irradiance at a point of a surface facing +x by sampling photons' starts is hard to see; what must agree is the other way: the
 /// mean of [`Emitters::arrive`] and the closed form.

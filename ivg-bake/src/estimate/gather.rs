@@ -9,6 +9,8 @@ use crate::sampling::hemisphere;
 use crate::sampling::rng::{Purpose, Stream};
 use crate::stage::Stage;
 
+mod mixtures;
+
 /// Shortest path after which Russian roulette may end it.
 const SURE_BOUNCES: u32 = 3;
 
@@ -147,6 +149,9 @@ impl Stage<'_> {
     /// One sample of the radiance that arrives at `origin` from `direction` \[W/(m² sr)\]. Without `direct`, what the first
     /// surface emits is left out (the sky is not).
     pub(crate) fn radiance(&self, origin: Vec3, direction: Vec3, stream: &Stream, direct: bool) -> DVec3 {
+        if let Some(lobes) = self.surfaces.lobes() {
+            return self.radiance_of_mixtures(lobes, (origin, direction), stream, direct);
+        }
         let (mut origin, mut direction) = (origin, direction);
         let (mut radiance, mut throughput) = (DVec3::ZERO, DVec3::ONE);
         for bounce in 1..=MOST_BOUNCES {

@@ -20,8 +20,10 @@ pub(crate) enum Purpose {
     Gather = 4,
     /// Sampling a light from a point.
     NextEvent = 5,
+    /// Facets of a rough mirror.
+    Facets = 6,
     /// Which vertices light is gathered at to measure bias.
-    Probe = 6,
+    Probe = 7,
 }
 
 /// The random numbers of one item (a photon, a path) under one seed.

@@ -1,4 +1,5 @@
 use glam::{DVec3, Vec3};
+use ivg_scene::Material;
 
 use super::{Books, Tracer};
 use crate::accumulate::{Sums, Total};
@@ -8,7 +9,7 @@ use crate::sampling::hemisphere;
 use crate::sampling::rng::{Purpose, Stream};
 use crate::stage::{Effects, Stage};
 
-const DIFFUSE: Effects = Effects { textures: false, sky: false };
+const DIFFUSE: Effects = Effects { textures: false, sky: false, mirrors: false, glass: false };
 
 /// Counts flights, and remembers the largest power.
 #[derive(Default)]
@@ -41,8 +42,12 @@ impl Estimate for EachFlight {
 }
 
 fn trace(builder: SceneBuilder, photons: u64, max_bounces: u32) -> (Books, Count) {
+    trace_with(builder, DIFFUSE, photons, max_bounces)
+}
+
+fn trace_with(builder: SceneBuilder, effects: Effects, photons: u64, max_bounces: u32) -> (Books, Count) {
     let (scene, flat) = builder.build();
-    let stage = Stage::new(&scene, &flat, DIFFUSE, None).unwrap();
+    let stage = Stage::new(&scene, &flat, effects, None).unwrap();
     let tracer = Tracer { stage: &stage, seed: 3, max_bounces };
     let (mut books, mut count) = (Books::default(), Count::default());
     (0..photons).for_each(|photon| tracer.trace(photon, &EachFlight, &mut count, &mut books));
@@ -139,4 +144,74 @@ fn paths_stay_inside_a_closed_box_on_a_floor() {
             direction = hemisphere::cosine(side, [u[0], u[1]]);
         }
     }
+}
+
+/// A room with everything that surfaces can do, in colours that differ from channel to channel.
+fn mixed_room() -> SceneBuilder {
+    let mut builder = room(0.6);
+    let gold = Vec3::new(1.0, 0.8, 0.3);
+    let metal = |roughness, specular| Material {
+        albedo: gold,
+        specular,
+        specular_colour: gold,
+        metallic: true,
+        roughness,
+        ..Material::default()
+    };
+    let tinted = Vec3::new(0.9, 1.0, 0.5);
+    let glass = Material {
+        albedo: Vec3::ZERO,
+        transmission: 1.0,
+        transmission_colour: tinted,
+        ..Material::default()
+    };
+    let materials = [
+        metal(0.0, 1.0),
+        metal(0.6, 0.7),
+        glass.clone(),
+        Material { thin: true, ..glass },
+        Material {
+            albedo: Vec3::new(0.5, 0.1, 0.0),
+            specular: 0.4,
+            specular_colour: Vec3::new(0.0, 0.3, 1.0),
+            roughness: 0.4,
+            ..Material::default()
+        },
+    ];
+    for (n, material) in materials.into_iter().enumerate() {
+        let index = builder.any_material(material);
+        builder.sphere(Vec3::new(-0.7 + 0.35 * n as f32, 0.1, -0.2), 0.15, 2, index, false);
+    }
+    builder
+}
+
+#[test]
+fn books_balance_and_no_photon_grows_whatever_surfaces_do() {
+    let (books, count) = trace_with(mixed_room(), Effects::ALL, 20_000, 200);
+    assert_balanced(&books);
+    assert!(count.largest <= 1.0, "{}", count.largest);
+    assert_eq!(books.escaped, [0; 3], "light left a closed room");
+}
+
+/// All effects in a scene that has none of them: not one bit is different.
+#[test]
+fn what_is_not_there_changes_nothing() {
+    let (with, flights) = trace_with(room(0.7), Effects::ALL, 2000, 100);
+    let (without, same) = trace(room(0.7), 2000, 100);
+    assert_eq!((with, flights.flights, flights.largest), (without, same.flights, same.largest));
+}
+
+/// The code for mixtures, given surfaces that reflect evenly, makes of every photon what the plain code makes of it.
+#[test]
+fn even_reflection_is_the_same_in_a_scene_with_a_mirror() {
+    let traced = |effects| {
+        let mut builder = room(0.7);
+        let mirror = builder.any_material(Material { specular: 1.0, ..Material::default() });
+        // Behind the room, where no light comes.
+        builder.sphere(Vec3::splat(50.0), 1.0, 0, mirror, false);
+        trace_with(builder, effects, 2000, 100)
+    };
+    let (with, without) = (traced(Effects::ALL), traced(DIFFUSE));
+    assert_eq!(with.0, without.0);
+    assert_eq!((with.1.flights, with.1.largest), (without.1.flights, without.1.largest));
 }

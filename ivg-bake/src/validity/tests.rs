@@ -18,7 +18,7 @@ fn surroundings(lit: bool, low: f64, high: f64, count: usize) -> (Boxes, Surroun
     // Outside, shining away from the room.
     builder.quad(Vec3::new(0.3, -0.9, 0.3), Vec3::X * 0.4, Vec3::Z * 0.4, lamp);
     let (scene, flat) = builder.build();
-    let effects = Effects { textures: false, sky: false };
+    let effects = Effects { textures: false, sky: false, mirrors: false, glass: false };
     let stage = Stage::new(&scene, &flat, effects, Some((DVec3::splat(-1.0), DVec3::splat(2.0)))).unwrap();
     let step = (high - low) / (count - 1) as f64;
     let metre = stage.space.scale();
@@ -116,7 +116,7 @@ fn in_a_cube(hole: f32, builder: SceneBuilder) -> u8 {
         strip(&mut builder, near, far, far, 0.4);
     }
     let (scene, flat) = builder.build();
-    let effects = Effects { textures: false, sky: scene.sky.is_some() };
+    let effects = Effects { textures: false, sky: scene.sky.is_some(), mirrors: false, glass: false };
     let bounds = Some((DVec3::ZERO, DVec3::ONE));
     let stage = Stage::new(&scene, &flat, effects, bounds).unwrap();
     let metre = stage.space.scale();
