@@ -5,7 +5,7 @@ use std::path::Path;
 
 use ivg_grid::IrradianceGrid;
 use ivg_scene::Scene;
-use pmesh_format::Replay;
+use pmesh_format::{LevelChange, Replay};
 use tokio::runtime::Runtime;
 use tokio::sync::oneshot;
 
@@ -136,6 +136,23 @@ impl Session {
     #[must_use]
     pub fn grid_header(&self) -> Option<&ivg_format::Header> {
         self.session.grid_header()
+    }
+
+    /// As [`crate::Session::level_at`].
+    #[must_use]
+    pub fn level_at(&self, index: usize, share: f64) -> Option<u32> {
+        self.session.level_at(index, share)
+    }
+
+    /// As [`crate::Session::level_for`].
+    #[must_use]
+    pub fn level_for(&self, index: usize, view: &View) -> Option<u32> {
+        self.session.level_for(index, view)
+    }
+
+    /// As [`crate::Session::step`].
+    pub fn step(&mut self, index: usize, from: u32, to: u32) -> Option<(&Replay, LevelChange)> {
+        self.session.step(index, from, to)
     }
 
     /// As [`crate::Session::scene_at`].

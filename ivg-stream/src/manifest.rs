@@ -3,7 +3,7 @@
 use ivg_scene::{Material, Mesh, Scene, SceneError, import};
 use pmesh_format::{IndexedMesh, Replay};
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DAffine3, DVec3, Vec2, Vec3};
 
 use crate::extensions::{ExtensionError, Extensions, FileEntry, MeshExtension};
 
@@ -66,21 +66,14 @@ impl Manifest {
 }
 
 impl MeshEntry {
-    /// Puts the level of `share` of all vertices, or the highest that `replay` has if that is lower, in the place of
-    /// the mesh.
-    pub(crate) fn put_level(&self, replay: &mut Replay, share: f64, scene: &mut Scene) {
-        let header = replay.header();
-        let wanted = (share.clamp(0.0, 1.0) * f64::from(header.vertex_count)).ceil() as u32;
-        self.put(replay, wanted, scene);
+    /// From the space of the progressive mesh to the world, where a node of this transform shows it.
+    #[must_use]
+    pub fn transform(&self, node: &DAffine3) -> DAffine3 {
+        *node * DAffine3::from_translation(-DVec3::from_array(self.origin))
     }
 
-    /// Puts the level of so many vertices, or the nearest that `replay` has, in the place of the mesh.
-    pub(crate) fn put(&self, replay: &mut Replay, wanted: u32, scene: &mut Scene) {
-        let coarsest = replay.header().base_vertices;
-        let level = wanted.clamp(coarsest, replay.max_level().max(coarsest));
-        if replay.set_level(level).is_err() {
-            return;
-        }
+    /// Puts the level that `replay` is at in the place of the mesh.
+    pub(crate) fn put(&self, replay: &Replay, scene: &mut Scene) {
         let level = replay.mesh();
         let fallback = scene.materials.len() as u32;
         let material = |number: u16| {
@@ -98,6 +91,18 @@ impl MeshEntry {
             scene.materials.push(Material::default());
         }
     }
+}
+
+/// The level of so many vertices, or the nearest that has arrived.
+pub(crate) fn nearest_level(replay: &Replay, wanted: u32) -> Option<u32> {
+    let levels = replay.levels()?;
+    Some(wanted.clamp(*levels.start(), *levels.end()))
+}
+
+/// The level of that share of all vertices, in \[0, 1\], or the highest that has arrived if that is lower.
+pub(crate) fn level_of_share(replay: &Replay, share: f64) -> Option<u32> {
+    let wanted = (share.clamp(0.0, 1.0) * f64::from(replay.header().vertex_count)).ceil() as u32;
+    nearest_level(replay, wanted)
 }
 
 /// A level of a progressive mesh as a mesh of a scene: one vertex a wedge, so that every corner keeps its normal, texture

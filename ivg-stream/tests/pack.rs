@@ -198,3 +198,42 @@ fn a_mesh_is_shown_as_exactly_as_a_picture_needs() {
     let coarsest: usize = local.scene_at(0.0).meshes.iter().map(|mesh| mesh.positions.len()).sum();
     assert_eq!((counts[0], counts[4]), (finest, coarsest));
 }
+
+#[test]
+fn a_copy_of_a_mesh_follows_its_levels_by_what_changes() {
+    let directory = tempfile::tempdir().unwrap();
+    pack_into(directory.path(), 20).unwrap();
+    let mut local = open(directory.path()).unwrap();
+    let camera = local.manifest().scene.camera_or_framed();
+    let (mut level, mut faces, mut rewritten) = (0, Vec::new(), Vec::new());
+    for pixels in [1.0, 0.5, 0.55, 50.0, 0.4, 0.0] {
+        let view = View { camera, height: 1000, pixels };
+        let to = local.level_for(0, &view).unwrap();
+        // What others look at in between makes no difference.
+        let scene = local.scene_for(&view);
+        let entry = local.manifest().meshes[0].clone();
+        local.step(0, 5, 40).unwrap();
+        let (replay, change) = local.step(0, level, to).unwrap();
+        assert_eq!((change.from, change.to, replay.level()), (level, to, to));
+        faces.resize(replay.face_count() as usize, [u32::MAX; 3]);
+        for range in &change.changed {
+            let range = range.start as usize..range.end as usize;
+            faces[range.clone()].copy_from_slice(&replay.indices()[range]);
+        }
+        assert_eq!(faces, replay.indices(), "{pixels} pixels");
+        rewritten.push(change.changed.iter().map(|range| range.end - range.start).sum::<u32>());
+        level = to;
+        // The scene shows the same level in the same place.
+        let (mesh, node) = (&scene.meshes[entry.mesh], &scene.nodes[0]);
+        assert_eq!(mesh.positions.len(), to as usize);
+        let (own, header) = (replay.positions()[2], replay.header());
+        let point = DVec3::from(header.origin) + glam::Vec3::from(own).as_dvec3();
+        let shown = node.transform.transform_point3(mesh.origin + mesh.positions[2].as_dvec3());
+        assert_eq!(entry.transform(&node.transform).transform_point3(point), shown);
+    }
+    assert!(rewritten[2] * 4 < rewritten[0], "a small step changes little: {rewritten:?}");
+    // Beyond what there is the nearest; nothing without a mesh.
+    assert_eq!(local.step(0, level, u32::MAX).unwrap().1.to, local.level_at(0, 1.0).unwrap());
+    assert_eq!(local.step(0, level, 0).unwrap().1.to, local.level_at(0, 0.0).unwrap());
+    assert!(local.step(9, 0, 5).is_none() && local.level_at(9, 1.0).is_none());
+}

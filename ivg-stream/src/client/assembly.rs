@@ -4,13 +4,13 @@ use std::collections::HashMap;
 
 use ivg_grid::IrradianceGrid;
 use ivg_scene::Scene;
-use pmesh_format::Replay;
+use pmesh_format::{LevelChange, Replay};
 
 use super::contents::{GridContents, MeshContents};
 use super::download::{Contents, Download};
 use super::options::SceneLimits;
 use crate::extensions::FileEntry;
-use crate::manifest::Manifest;
+use crate::manifest::{Manifest, level_of_share, nearest_level};
 use crate::view::View;
 
 /// What is known of a scene.
@@ -106,23 +106,52 @@ impl Assembly {
         self.grid.as_ref()?.contents.header()
     }
 
+    /// The level of mesh `index` of so large a share of its vertices, or the highest there is if that is lower.
+    pub(crate) fn level_at(&self, index: usize, share: f64) -> Option<u32> {
+        level_of_share(self.replay(index)?, share)
+    }
+
+    /// The coarsest level of mesh `index` that is exact enough for a picture, or the highest there is if that is coarser.
+    pub(crate) fn level_for(&self, index: usize, view: &View) -> Option<u32> {
+        let (replay, entry) = (self.replay(index)?, self.manifest.meshes.get(index)?);
+        let error = view.error_of(entry, replay.header(), &self.manifest.scene);
+        nearest_level(replay, replay.level_of_error(error).unwrap_or_default())
+    }
+
+    /// Mesh `index` at the level nearest to `to`, and what is different there for whoever has level `from`: everything if
+    /// there is no such level.
+    pub(crate) fn step(&mut self, index: usize, from: u32, to: u32) -> Option<(&Replay, LevelChange)> {
+        let file = *self.mesh_files.get(index)?;
+        let replay = self.meshes[file].contents.replay_mut()?;
+        let to = nearest_level(replay, to)?;
+        let known = replay.set_level(from).is_ok();
+        let change = replay.set_level(to).ok()?;
+        let faces = 0..replay.face_count();
+        let change = if known {
+            change
+        } else {
+            LevelChange { from: 0, to, changed: Some(faces).filter(|f| !f.is_empty()).into_iter().collect() }
+        };
+        Some((replay, change))
+    }
+
     pub(crate) fn scene_at(&mut self, share: f64) -> Scene {
-        let mut scene = self.manifest.scene.clone();
-        for (entry, &file) in self.manifest.meshes.iter().zip(&self.mesh_files) {
-            if let Some(replay) = self.meshes[file].contents.replay_mut() {
-                entry.put_level(replay, share, &mut scene);
-            }
-        }
-        scene
+        self.scene_of(|assembly, index| assembly.level_at(index, share))
     }
 
     pub(crate) fn scene_for(&mut self, view: &View) -> Scene {
+        self.scene_of(|assembly, index| assembly.level_for(index, view))
+    }
+
+    /// The scene with each mesh at the level chosen for it; one of which nothing has arrived as in `scene.glb`.
+    fn scene_of(&mut self, level: impl Fn(&Self, usize) -> Option<u32>) -> Scene {
         let mut scene = self.manifest.scene.clone();
-        for (entry, &file) in self.manifest.meshes.iter().zip(&self.mesh_files) {
-            if let Some(replay) = self.meshes[file].contents.replay_mut() {
-                let error = view.error_of(entry, replay.header(), &self.manifest.scene);
-                let level = replay.level_of_error(error).unwrap_or_default();
-                entry.put(replay, level, &mut scene);
+        for index in 0..self.mesh_files.len() {
+            let Some(level) = level(self, index) else { continue };
+            if let Some(replay) = self.meshes[self.mesh_files[index]].contents.replay_mut()
+                && replay.set_level(level).is_ok()
+            {
+                self.manifest.meshes[index].put(replay, &mut scene);
             }
         }
         scene

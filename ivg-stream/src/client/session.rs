@@ -2,7 +2,7 @@
 
 use ivg_grid::IrradianceGrid;
 use ivg_scene::Scene;
-use pmesh_format::Replay;
+use pmesh_format::{LevelChange, Replay};
 use sha2::{Digest, Sha256};
 
 use super::assembly::Assembly;
@@ -153,6 +153,29 @@ impl Session {
     #[must_use]
     pub fn grid_header(&self) -> Option<&ivg_format::Header> {
         self.assembly.grid_header()
+    }
+
+    /// The level of mesh `index` of [`Manifest::meshes`] that has `share` of its vertices, in \[0, 1\], or the highest that has
+    /// arrived if that is lower; `None` before its first packet.
+    #[must_use]
+    pub fn level_at(&self, index: usize, share: f64) -> Option<u32> {
+        self.assembly.level_at(index, share)
+    }
+
+    /// The coarsest level of mesh `index` of [`Manifest::meshes`] that is exact enough for a picture, by the errors stored in
+    /// its file, or the highest that has arrived if that is coarser; `None` before its first packet.
+    #[must_use]
+    pub fn level_for(&self, index: usize, view: &View) -> Option<u32> {
+        self.assembly.level_for(index, view)
+    }
+
+    /// Goes to level `to` of mesh `index` of [`Manifest::meshes`], or the nearest that has arrived; what is different there for
+    /// a copy of its buffers that holds level `from`. A copy that holds nothing is at level 0: all faces are different then.
+    /// `None` before the first packet.
+    ///
+    /// What the level was before, and what has arrived since, makes no difference.
+    pub fn step(&mut self, index: usize, from: u32, to: u32) -> Option<(&Replay, LevelChange)> {
+        self.assembly.step(index, from, to)
     }
 
     /// The scene with each mesh at the level of `share` of its vertices, in [0, 1], or the highest level that has

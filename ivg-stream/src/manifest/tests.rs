@@ -40,7 +40,9 @@ fn entry(materials: Option<Vec<u32>>, origin: [f64; 3]) -> MeshEntry {
 fn a_share_is_a_level_and_the_name_stays() {
     for (share, vertices) in [(0.0, 3), (0.5, 3), (0.75, 3), (0.76, 4), (1.0, 4), (7.0, 4)] {
         let mut scene = scene();
-        entry(None, [0.0; 3]).put_level(&mut replay(), share, &mut scene);
+        let mut replay = replay();
+        replay.set_level(level_of_share(&replay, share).unwrap()).unwrap();
+        entry(None, [0.0; 3]).put(&replay, &mut scene);
         let mesh = &scene.meshes[0];
         assert_eq!((mesh.positions.len(), mesh.name.as_str()), (vertices, "coarse"), "{share}");
         assert_eq!(mesh.triangles.len(), vertices - 2);
@@ -56,7 +58,7 @@ fn materials_are_mapped_and_missing_ones_are_the_default() {
         (Some(vec![9, 9, 0]), [3, 0], 4),
     ] {
         let mut scene = scene();
-        entry(map.clone(), [0.0; 3]).put_level(&mut replay(), 1.0, &mut scene);
+        entry(map.clone(), [0.0; 3]).put(&replay(), &mut scene);
         assert_eq!(scene.meshes[0].triangle_materials, expected, "{map:?}");
         assert_eq!(scene.materials.len(), count, "{map:?}");
         assert!(scene.check().is_ok());
@@ -66,7 +68,7 @@ fn materials_are_mapped_and_missing_ones_are_the_default() {
 #[test]
 fn the_two_origins_are_subtracted() {
     let mut scene = scene();
-    entry(None, [1e6, 0.0, 0.5]).put_level(&mut replay(), 1.0, &mut scene);
+    entry(None, [1e6, 0.0, 0.5]).put(&replay(), &mut scene);
     assert_eq!(scene.meshes[0].origin, DVec3::new(0.0, 0.25, -3.5));
     assert_eq!(scene.meshes[0].positions[3], Vec3::new(1.0, 1.0, 0.5));
 }
