@@ -73,7 +73,7 @@ pub(crate) enum Way {
 }
 
 impl LobeTable {
-    /// The lobes of a scene whose triangles have been checked; `None` if all that is shown reflects evenly.
+    /// The lobes of a scene whose triangles have been checked; `None` where neither mirrors nor glass are simulated.
     pub(crate) fn new(scene: &Scene, flat: &FlatScene, effects: Effects) -> Option<Self> {
         if !(effects.mirrors || effects.glass) {
             return None;
@@ -86,9 +86,6 @@ impl LobeTable {
             let facets = (used && lobes.mirror > 0.0 && lobes.alpha > 0.0).then(|| Facets::new(lobes.alpha));
             let diffuse = lobes.is_diffuse() || !used;
             materials.push(Prepared { lobes, diffuse, facets, thin: material.thin });
-        }
-        if materials.iter().all(|material| material.diffuse) {
-            return None;
         }
         let glass = |triangle: usize| {
             let material = &materials[flat.triangle_materials[triangle] as usize];

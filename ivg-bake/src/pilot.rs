@@ -11,7 +11,7 @@ use crate::accumulate::{Sums, Total};
 use crate::bake::Chosen;
 use crate::estimate::{Estimate, Flight};
 use crate::ready::Ready;
-use crate::stage::{Effects, Stage};
+use crate::stage::Effects;
 use crate::tally::{Traced, run};
 use crate::trace::{BOOKED_BOUNCES, Tracer};
 use crate::workers::Workers;
@@ -59,9 +59,9 @@ impl PilotReport {
 ///
 /// How costs are found: rays are timed alone, and again with deposits; the difference is what deposits cost. Both are scaled
 /// up to all photons. Direct light costs the rays of first flights, counted; the sky costs its share of the photons;
-/// textures cost the difference between rays with and without looking them up; diffuse indirect light costs the rest and
-/// the preparation. Shadows cost the bake nothing of their own. The energy share of an effect is the share of all energy in
-/// flight that belongs to it (of textures: by how much they change the reflected energy).
+/// textures, mirrors and glass cost the difference between rays with and without them, also where they are left out (a
+/// difference that is lost in the noise counts as none); diffuse indirect light costs the rest and the preparation. Shadows cost the bake nothing of their own. The energy share of an effect is the share of all energy in
+/// flight that belongs to it (of textures, mirrors and glass: by how much they change the reflected energy).
 ///
 /// Reflections: the fewest after which the energy still to be reflected, summed over all further flights, is at most
 /// `plan.energy_cutoff` of the emitted energy; at most 63.
@@ -107,19 +107,35 @@ pub fn pilot(
     let in_flight: f64 = report.energy_by_bounce.iter().sum();
     let first_flights = report.ray_seconds / report.flights_per_photon;
     let sky_share = ready.stage.emitters.sky_share();
-    let textures = if plan.needs(Effect::Textures) {
-        let plain = Effects { textures: false, ..Effects::of(plan) };
-        let stage = Stage::new(scene, flat, plain, Some(options.first_and_last(flat)?))?;
+    // The same photons with other effects, rays alone.
+    let effects = Effects::of(plan);
+    let with = |effects: Effects| {
+        let stage = ready.stage.with_effects(scene, flat, effects)?;
         let tracer = Tracer { stage: &stage, ..tracer };
-        let (plain, plain_time) = timed(|| run(&tracer, &NoDeposits, photons, &workers))?;
-        let reflected = |t: &Traced| t.books.after_bounces[1..].iter().sum::<i128>() as f64;
-        let change = (reflected(&rays) - reflected(&plain)).abs() / reflected(&plain).max(1.0);
-        Some(Cost { seconds: (ray_time - plain_time).max(0.0) * scale, energy_share: change.min(1.0) })
-    } else {
-        None
+        timed(|| run(&tracer, &NoDeposits, photons, &workers))
     };
+    let reflected = |t: &Traced| t.books.after_bounces[1..].iter().sum::<i128>() as f64;
+    // Between rays with an effect and without: time, and the change of the reflected energy.
+    let difference = |(with, with_time): (&Traced, f64), (without, without_time): (&Traced, f64)| {
+        let change = (reflected(with) - reflected(without)).abs() / reflected(without).max(1.0);
+        Cost { seconds: (with_time - without_time).max(0.0) * scale, energy_share: change.min(1.0) }
+    };
+    let mut measured = Vec::new();
+    for (effect, other) in [
+        (Effect::Textures, Effects { textures: !effects.textures, ..effects }),
+        (Effect::Mirrors, Effects { mirrors: !effects.mirrors, ..effects }),
+        (Effect::Glass, Effects { glass: !effects.glass, ..effects }),
+    ] {
+        let (traced, time) = with(other)?;
+        let (present, changed) = ((&rays, ray_time), (&traced, time));
+        let cost =
+            if plan.needs(effect) { difference(present, changed) } else { difference(changed, present) };
+        measured.push((effect, cost));
+    }
     for planned in &mut plan.effects {
+        let known = measured.iter().find(|(effect, _)| *effect == planned.effect).map(|(_, cost)| *cost);
         if planned.need != Need::Needed {
+            planned.cost = known.filter(|_| planned.need == Need::NotNeeded);
             continue;
         }
         planned.cost = match planned.effect {
@@ -132,8 +148,7 @@ pub fn pilot(
                 seconds: sky_share * (report.ray_seconds + report.deposit_seconds),
                 energy_share: sky_share,
             }),
-            Effect::Textures => textures,
-            _ => planned.cost,
+            _ => known.or(planned.cost),
         };
     }
     Ok(report)

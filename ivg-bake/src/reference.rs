@@ -99,7 +99,7 @@ impl<'a> Oracle<'a> {
     ///
     /// [`BakeError::NoLight`], [`BakeError::BadNumber`], [`BakeError::BadIndex`], [`BakeError::TreeTooDeep`].
     pub fn new(scene: &'a Scene, flat: &'a FlatScene) -> Result<Self, BakeError> {
-        Ok(Self { stage: Stage::new(scene, flat, Effects::ALL, None)? })
+        Ok(Self { stage: Stage::new(scene, flat, Effects::of_scene(scene, flat), None)? })
     }
 
     /// The indirect irradiance vectors at points in world space \[m\].

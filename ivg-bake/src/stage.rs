@@ -1,5 +1,7 @@
 //! A scene made ready for rays: geometry, surfaces, lights, and the space they are in.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 use ivg_scene::{Effect, EffectPlan, FlatScene, Scene};
 
@@ -15,8 +17,9 @@ use crate::surface::Surfaces;
 pub(crate) struct Stage<'a> {
     pub(crate) space: Space,
     pub(crate) surfaces: Surfaces<'a>,
-    pub(crate) accel: TraceScene,
+    pub(crate) accel: Arc<TraceScene>,
     pub(crate) emitters: Emitters,
+    world: Sphere,
     /// What stops sight, where that is not all that stops rays: without panes.
     sight: Option<TraceScene>,
     /// What stops light: without glass.
@@ -47,7 +50,21 @@ impl Effects {
         }
     }
 
-    /// All of them.
+    /// What a scene shows.
+    pub(crate) fn of_scene(scene: &Scene, flat: &FlatScene) -> Self {
+        let mut used = vec![false; scene.materials.len()];
+        for &material in &flat.triangle_materials {
+            // An index out of range is refused by name where surfaces are made.
+            used.get_mut(material as usize).into_iter().for_each(|used| *used = true);
+        }
+        let lobes =
+            || scene.materials.iter().zip(&used).filter(|(_, used)| **used).map(|(m, _)| m.lobes(true, true));
+        let (mirrors, glass) = (lobes().any(|l| l.mirror > 0.0), lobes().any(|l| l.glass > 0.0));
+        Self { textures: true, sky: true, mirrors, glass }
+    }
+
+    /// All of them, whether they are there or not.
+    #[cfg(test)]
     pub(crate) const ALL: Self = Self { textures: true, sky: true, mirrors: true, glass: true };
 }
 
@@ -75,12 +92,29 @@ impl<'a> Stage<'a> {
         }
         let space = Space::new(min, max);
         let surfaces = Surfaces::new(scene, flat, space, effects)?;
-        let accel = TraceScene::new(surfaces.triangles())?;
+        let accel = Arc::new(TraceScene::new(surfaces.triangles())?);
         let world = Sphere { centre: Vec3::ZERO, radius: space.to_bake(max).length() * WORLD_MARGIN };
         let emitters = Emitters::new(scene, &surfaces, space, world, effects.sky)?;
         let tree = |triangles: Option<Vec<_>>| triangles.map(|t| TraceScene::new(&t)).transpose();
         let (sight, clear) = (tree(surfaces.without_panes())?, tree(surfaces.without_glass())?);
-        Ok(Self { space, surfaces, accel, emitters, sight, clear })
+        Ok(Self { space, surfaces, accel, emitters, world, sight, clear })
+    }
+
+    /// The same scene with other effects, for photons; who looks around sees what stops rays.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stage::new`].
+    pub(crate) fn with_effects(
+        &self,
+        scene: &'a Scene,
+        flat: &'a FlatScene,
+        effects: Effects,
+    ) -> Result<Self, BakeError> {
+        let (space, world, accel) = (self.space, self.world, Arc::clone(&self.accel));
+        let surfaces = Surfaces::new(scene, flat, space, effects)?;
+        let emitters = Emitters::new(scene, &surfaces, space, world, effects.sky)?;
+        Ok(Self { space, surfaces, accel, emitters, world, sight: None, clear: None })
     }
 
     /// What stops sight: all surfaces but panes. The inside of a solid of glass is apart from the air around it.

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(crate) use self::grid::{
-    BakeSettings, EstimatorArgument, FilterArgument, RecodeArguments, ReconstructionArgument, SampleArguments,
+    BakeSettings, EffectsArgument, EstimatorArgument, FilterArgument, RecodeArguments,
+    ReconstructionArgument, SampleArguments,
 };
 pub(crate) use self::mesh::{ExtractArguments, MeshArguments, SCENE_POSITIONS, StorageArguments};
 use crate::scene_args::{Bounds, GridSize, PictureSize, ScheduleArgument};
@@ -103,6 +104,9 @@ pub(crate) struct PlanArguments {
     /// Share of the light energy that may be left out by cutting bounces, in (0, 1).
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::scene_args::share)]
     pub(crate) energy_cutoff: f64,
+    /// Which light effects are planned.
+    #[arg(long, value_enum, default_value_t = EffectsArgument::Needed)]
+    pub(crate) effects: EffectsArgument,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,

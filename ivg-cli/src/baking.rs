@@ -9,7 +9,7 @@ use ivg_scene::import::{self, ImportOptions};
 use ivg_scene::plan::{self, PlanOptions};
 use ivg_scene::{EffectPlan, FlatScene, Need, Scene};
 
-use crate::args::{BakeSettings, EstimatorArgument, SceneArguments};
+use crate::args::{BakeSettings, EffectsArgument, EstimatorArgument, SceneArguments};
 use crate::failure::Failure;
 use crate::files::shown;
 use crate::progress::BakeBar;
@@ -58,11 +58,11 @@ pub(crate) struct Baked {
 /// Plans a scene and measures the plan by a pilot run of 1 % of the photons.
 pub(crate) fn plan(
     loaded: &LoadedScene,
-    energy_cutoff: f64,
+    planning: PlanOptions,
     options: &BakeOptions,
 ) -> Result<(EffectPlan, Option<PilotReport>), Failure> {
     let LoadedScene { scene, flat } = loaded;
-    let mut plan = plan::analyse(scene, flat, &PlanOptions { energy_cutoff });
+    let mut plan = plan::analyse(scene, flat, &planning);
     if scene.require_light().is_err() {
         return Ok((plan, None));
     }
@@ -92,7 +92,7 @@ pub(crate) fn bake(loaded: &LoadedScene, settings: &BakeSettings) -> Result<Bake
         )));
     }
     let start = Instant::now();
-    let (plan, _) = plan(loaded, PlanOptions::default().energy_cutoff, &options)?;
+    let (plan, _) = plan(loaded, planning(settings.effects), &options)?;
     report_unsupported(&loaded.scene, &plan);
     let bar = BakeBar::new("bake", settings.photons, "photons");
     let result = ivg_bake::bake(&loaded.scene, &loaded.flat, &plan, &options, &bar);
@@ -101,6 +101,11 @@ pub(crate) fn bake(loaded: &LoadedScene, settings: &BakeSettings) -> Result<Bake
     let elapsed = start.elapsed();
     let file = encode(&result.grid, &result.stats, settings, &plan)?;
     Ok(Baked { plan, grid: result.grid, stats: result.stats, file, elapsed })
+}
+
+/// What a plan is made with, where no error is asked for.
+pub(crate) fn planning(effects: EffectsArgument) -> PlanOptions {
+    PlanOptions { all_effects: effects == EffectsArgument::All, ..PlanOptions::default() }
 }
 
 /// The options of the baker that the arguments name.
@@ -117,6 +122,7 @@ pub(crate) fn bake_options(settings: &BakeSettings) -> BakeOptions {
         seed: settings.seed,
         threads: settings.threads.map(usize::from),
         quantity: settings.encoding.quantity(),
+        ..BakeOptions::default()
     }
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn of(file: &[u8]) -> Result<Breakdown, Error> {
                     ];
                     let all: usize = arrays.iter().map(|(_, bytes)| bytes.len()).sum();
                     arrays.into_iter().for_each(|(kind, bytes)| add(kind, bytes.len()));
-                    add("wedges and switch codes", payload - all);
+                    add("wedges and switches", payload - all);
                 } else {
                     add("coded packets", payload);
                 }

@@ -12,6 +12,8 @@ mod convert;
 mod failure;
 mod files;
 mod kind;
+#[cfg(feature = "gpu")]
+mod live;
 mod loss;
 mod npy;
 mod packing;

@@ -64,7 +64,7 @@ pub struct PlannedEffect {
     pub need: Need,
     /// Why, in one sentence that names what in the scene decides it.
     pub reason: String,
-    /// What it costs; `None` before a pilot run, and where nothing is spent.
+    /// What it costs, of an effect that is left out what it would cost; `None` before a pilot run, and where nothing is spent.
     pub cost: Option<Cost>,
 }
 

@@ -102,16 +102,15 @@ fn shares_of_a_mixture_are_chosen_in_proportion() {
 }
 
 #[test]
-fn scenes_without_mirrors_and_glass_have_no_table() {
-    let plain = |material: Material, effects: Effects| {
-        let (scene, flat) = cube(material, false).build();
-        LobeTable::new(&scene, &flat, effects).is_none()
+fn what_is_not_simulated_is_not_there() {
+    let table = |material: &Material, effects: Effects| {
+        let (scene, flat) = cube(material.clone(), false).build();
+        LobeTable::new(&scene, &flat, effects).map(|table| table.is_more_than_diffuse(0))
     };
-    assert!(plain(Material::default(), Effects::ALL));
-    assert!(!plain(glass(), Effects::ALL));
-    assert!(plain(glass(), Effects { glass: false, ..Effects::ALL }));
-    assert!(plain(
-        Material { specular: 1.0, metallic: true, ..Material::default() },
-        Effects { mirrors: false, ..Effects::ALL }
-    ));
+    let metal = Material { specular: 1.0, metallic: true, ..Material::default() };
+    let (no_mirrors, no_glass) =
+        (Effects { mirrors: false, ..Effects::ALL }, Effects { glass: false, ..Effects::ALL });
+    assert_eq!(table(&glass(), Effects { mirrors: false, ..no_glass }), None);
+    assert_eq!((table(&glass(), no_glass), table(&glass(), no_mirrors)), (Some(false), Some(true)));
+    assert_eq!((table(&metal, no_glass), table(&metal, no_mirrors)), (Some(true), Some(false)));
 }

@@ -43,5 +43,8 @@ fn a_pilot_finds_the_reflections_of_a_furnace_and_fills_costs() {
     assert!((indirect.energy_share + direct.energy_share - 1.0).abs() < 1e-12);
     assert!((direct.energy_share - 0.4).abs() < 0.04, "{direct:?}");
     assert!((indirect.seconds + direct.seconds - report.total_seconds()).abs() < 1e-9);
-    assert_eq!(cost(Effect::Sky), None, "what is not needed costs nothing");
+    assert_eq!(cost(Effect::Sky), None, "a sky that is not there costs nothing");
+    // The difference of two times, of which nothing is known but that it is not negative.
+    let mirrors = cost(Effect::Mirrors).expect("what it would cost is measured");
+    assert!(mirrors.seconds >= 0.0 && mirrors.energy_share == 0.0, "{mirrors:?}");
 }

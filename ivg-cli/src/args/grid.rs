@@ -29,6 +29,9 @@ pub(crate) struct BakeSettings {
     /// In which order the file brings the vertices.
     #[arg(long, value_parser = registry::order(), default_value = "slices")]
     pub(crate) order: Order,
+    /// Which light effects are simulated.
+    #[arg(long, value_enum, default_value_t = EffectsArgument::Needed)]
+    pub(crate) effects: EffectsArgument,
     /// Seed of the random numbers: the same seed gives the same bytes.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
@@ -39,6 +42,14 @@ pub(crate) struct BakeSettings {
     /// along the longest axis), those of explicit at most so many.
     #[arg(long, value_name = "S", default_value_t = 64, value_parser = crate::scene_args::count::<u32>)]
     pub(crate) per_slice: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EffectsArgument {
+    /// Those that the scene calls for.
+    Needed,
+    /// All there are, with light followed as far as it is followed at all: to see what leaving some out saves.
+    All,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -15,9 +15,11 @@ use ivg_scene::{Camera, EffectPlan};
 use ivg_stream::blocking::{Server, Session};
 use ivg_stream::{FetchOptions, Goal, Progress, ServerOptions};
 
-use crate::args::{BakeSettings, DemoArguments, EstimatorArgument, StorageArguments};
+use crate::args::{BakeSettings, DemoArguments, EffectsArgument, EstimatorArgument, StorageArguments};
 use crate::baking::{self, LoadedScene};
 use crate::failure::Failure;
+#[cfg(feature = "gpu")]
+use crate::live::Live;
 use crate::packing::{self, Meshes};
 use crate::picture::{self, Renderer};
 use crate::{files, progress};
@@ -59,6 +61,8 @@ struct Shot {
     vertices: u64,
     image: Image,
     render_time: Duration,
+    /// Bytes of meshes that went to the GPU for this picture, if one draws.
+    uploaded: Option<u64>,
 }
 
 pub(crate) fn run(arguments: &DemoArguments) -> Result<ExitCode, Failure> {
@@ -118,6 +122,7 @@ fn settings(arguments: &DemoArguments) -> BakeSettings {
         estimator: EstimatorArgument::TrackLength,
         encoding: Encoding::PackedOct24,
         order: Order::Slices,
+        effects: EffectsArgument::Needed,
         seed: 1,
         threads: None,
         per_slice: PER_SLICE,
@@ -138,13 +143,21 @@ fn stream(
         Session::open(&server.url(), FetchOptions::default(), &mut |_| {}).map_err(Failure::new)?;
     let mut streaming = Duration::ZERO;
     let mut shots = Vec::new();
+    let mut drawn = Drawn {
+        arguments,
+        plan,
+        camera,
+        renderer,
+        #[cfg(feature = "gpu")]
+        live: None,
+    };
     for stage in &STAGES {
         let goal = Goal { geometry: stage.geometry, light: stage.light.unwrap_or(0.0) };
         // The session's own clock runs on while a picture is drawn; only the streaming counts here.
         let progress = session.fetch_until(goal, &mut |_| {}).map_err(Failure::new)?;
         streaming += clock.elapsed();
         let progress = Progress { elapsed: streaming, ..progress };
-        let shot = draw(arguments, stage, &mut session, progress, plan, camera, renderer)?;
+        let shot = drawn.draw(stage, &mut session, progress)?;
         progress::say(&format!(
             "{} after {:.3} s of streaming, drawn in {:.1} s on {}",
             stage.caption,
@@ -159,31 +172,54 @@ fn stream(
     Ok(shots)
 }
 
-fn draw(
-    arguments: &DemoArguments,
-    stage: &'static Stage,
-    session: &mut Session,
-    progress: Progress,
-    plan: &EffectPlan,
+/// How pictures are drawn, one after the other.
+struct Drawn<'a> {
+    arguments: &'a DemoArguments,
+    plan: &'a EffectPlan,
     camera: Camera,
-    renderer: &Renderer,
-) -> Result<Shot, Failure> {
-    let scene = session.scene_at(stage.geometry);
-    let streamed =
-        session.manifest().meshes.iter().map(|entry| scene.meshes[entry.mesh].positions.len() as u64);
-    let vertices = streamed.sum();
-    let loaded = LoadedScene::from_scene(scene)?;
-    let mut render_scene = RenderScene::from_scene(&loaded.scene, &loaded.flat, camera);
-    let mut options = RenderOptions::for_plan(plan, arguments.size.width, arguments.size.height);
-    let encoding = session.grid_header().map(|header| header.encoding);
-    match (session.grid(), encoding) {
-        (Some(grid), Some(encoding)) if stage.light.is_some() => {
-            options.reconstruction = Reconstruction::for_encoding(encoding);
-            render_scene.grid = Some(grid.clone());
+    renderer: &'a Renderer,
+    /// What stays on the GPU; nothing before the first picture.
+    #[cfg(feature = "gpu")]
+    live: Option<Live<'a>>,
+}
+
+impl Drawn<'_> {
+    fn draw(
+        &mut self,
+        stage: &'static Stage,
+        session: &mut Session,
+        progress: Progress,
+    ) -> Result<Shot, Failure> {
+        let levels = (0..session.manifest().meshes.len()).filter_map(|k| session.level_at(k, stage.geometry));
+        let vertices = levels.map(u64::from).sum();
+        let mut options =
+            RenderOptions::for_plan(self.plan, self.arguments.size.width, self.arguments.size.height);
+        let encoding = session.grid_header().map(|header| header.encoding);
+        let mut grid = None;
+        match (session.grid(), encoding) {
+            (Some(filled), Some(encoding)) if stage.light.is_some() => {
+                options.reconstruction = Reconstruction::for_encoding(encoding);
+                grid = Some(filled.clone());
+            }
+            _ => options.indirect = false,
         }
-        _ => options.indirect = false,
+        #[cfg(feature = "gpu")]
+        if let Renderer::Gpu(gpu) = self.renderer {
+            let live = match &mut self.live {
+                Some(live) => live,
+                none => none.insert(Live::new(gpu, session, self.camera)?),
+            };
+            let start = Instant::now();
+            let uploaded = Some(live.go_to(session, stage.geometry)?);
+            live.scene_mut().grid = grid;
+            let image = live.render(&options)?;
+            return Ok(Shot { stage, progress, vertices, image, render_time: start.elapsed(), uploaded });
+        }
+        let loaded = LoadedScene::from_scene(session.scene_at(stage.geometry))?;
+        let mut scene = RenderScene::from_scene(&loaded.scene, &loaded.flat, self.camera);
+        scene.grid = grid;
+        let start = Instant::now();
+        let image = self.renderer.render(&scene, &options)?;
+        Ok(Shot { stage, progress, vertices, image, render_time: start.elapsed(), uploaded: None })
     }
-    let start = Instant::now();
-    let image = renderer.render(&render_scene, &options)?;
-    Ok(Shot { stage, progress, vertices, image, render_time: start.elapsed() })
 }

@@ -1,7 +1,7 @@
 use std::process::ExitCode;
 
 use ivg_bake::BakeOptions;
-use ivg_scene::{Need, PlannedEffect};
+use ivg_scene::{Need, PlanOptions, PlannedEffect};
 use serde_json::json;
 
 use crate::args::PlanArguments;
@@ -12,7 +12,9 @@ use crate::{files, table};
 pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
     let loaded = LoadedScene::open(&arguments.scene)?;
     let options = BakeOptions { photons: arguments.photons, ..BakeOptions::default() };
-    let (plan, pilot) = baking::plan(&loaded, arguments.energy_cutoff, &options)?;
+    let planning =
+        PlanOptions { energy_cutoff: arguments.energy_cutoff, ..baking::planning(arguments.effects) };
+    let (plan, pilot) = baking::plan(&loaded, planning, &options)?;
     if arguments.json {
         let effects: Vec<_> = plan
             .effects
@@ -52,7 +54,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
     ))?;
     match pilot {
         Some(pilot) => files::print(&format!(
-            "\nUp to {} bounces: the rest is below {} % of the light energy.\nCosts are for {} photons on a 16x16x16 grid, measured with {} photons.\n",
+            "\nUp to {} bounces: the rest is below {} % of the light energy.\nCosts are for {} photons on a 16x16x16 grid, measured with {} photons; in brackets, what an effect left out would cost.\n",
             plan.max_bounces,
             100.0 * plan.energy_cutoff,
             arguments.photons,
@@ -80,7 +82,10 @@ fn row(planned: &PlannedEffect) -> Vec<String> {
     vec![
         planned.effect.name().to_owned(),
         need(planned.need).to_owned(),
-        cost(|cost| format!("{:.2}", cost.seconds)),
+        match (planned.need, planned.cost) {
+            (Need::NotNeeded, Some(cost)) => format!("({:.2})", cost.seconds),
+            _ => cost(|cost| format!("{:.2}", cost.seconds)),
+        },
         cost(|cost| format!("{:.1} %", 100.0 * cost.energy_share)),
         planned.reason.clone(),
     ]

@@ -67,6 +67,21 @@ impl Material {
 }
 
 impl Lobes {
+    /// The most light that is sent on in any channel, as a share, in [0, 1].
+    #[must_use]
+    pub fn most(&self) -> f32 {
+        let mirror = if self.metallic { 1.0 } else { self.mirror_colour.max_element() };
+        (self.diffuse * self.diffuse_colour.max_element() + self.mirror * mirror + self.glass).min(1.0)
+    }
+
+    /// What is sent on of light from everywhere, linear RGB, each channel in [0, 1], where the albedo texture has the colour
+    /// `texture`; that metals reflect more at grazing angles and glass absorbs less is left out.
+    #[must_use]
+    pub fn mean(&self, texture: Vec3) -> Vec3 {
+        let mirror = if self.metallic { self.mirror_colour * texture } else { self.mirror_colour };
+        self.diffuse * self.diffuse_colour * texture + self.mirror * mirror + self.glass * self.glass_colour
+    }
+
     /// Whether light is reflected evenly and in no other way.
     #[must_use]
     pub fn is_diffuse(&self) -> bool {

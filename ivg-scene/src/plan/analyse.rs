@@ -3,39 +3,38 @@
 use glam::{DVec3, Vec3};
 
 use super::shadow;
-use crate::{Effect, EffectPlan, FlatScene, Material, Need, PlannedEffect, Scene};
+use crate::{Effect, EffectPlan, FlatScene, Material, Need, PlannedEffect, Scene, Texture};
 
 /// What a plan depends on besides the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanOptions {
-    /// Share of the emitted energy below which the rest is not followed, in (0, 1).
+    /// Share of the emitted energy below which the rest is not followed, in (0, 1): a share of the error that is asked for,
+    /// where one is.
     pub energy_cutoff: f64,
+    /// Plan every effect, whether the scene calls for it or not, and follow light as far as it is followed at all: for
+    /// comparison with what is left out.
+    pub all_effects: bool,
 }
 
 impl Default for PlanOptions {
-    /// One per cent: below what a picture of eight bits a channel shows.
+    /// One per cent: below what a picture of eight bits a channel shows. Only effects that the scene calls for.
     fn default() -> Self {
-        Self { energy_cutoff: 0.01 }
+        Self { energy_cutoff: 0.01, all_effects: false }
     }
 }
 
+/// The energy cutoff of a plan of all effects: what sums in f32 resolve.
+const SMALLEST_CUTOFF: f64 = 1e-7;
+
 /// Most reflections that are followed: where surfaces reflect nearly everything, light never dies out by itself.
 const MAX_BOUNCES: u32 = 64;
-
-/// Share of mirror reflection from which on a surface counts as a mirror: what plain dielectrics reflect head-on (glTF
-/// 2.0, appendix B.2) is not yet one.
-const MIRROR_SHARE: f32 = 0.04;
-
-/// Roughness below which reflection shows a picture of the surroundings; rougher ones spread it over more than about 15
-/// degrees (the width of the lobe is the square of roughness), which is close to diffuse.
-const MIRROR_ROUGHNESS: f32 = 0.5;
 
 /// Names that a reason lists before it only counts the rest.
 const NAMES: usize = 5;
 
 /// Decides for each effect whether the scene needs it.
 ///
-/// The number of reflections follows from the largest albedo a: after n reflections at most a^n of the emitted energy is
+/// The number of reflections follows from the largest share a that a surface sends on: after n reflections at most a^n of the emitted energy is
 /// left, and following ends when that is below the cutoff. A pilot run of the baker measures it more closely.
 ///
 /// # Panics
@@ -45,22 +44,29 @@ const NAMES: usize = 5;
 pub fn analyse(scene: &Scene, flat: &FlatScene, options: &PlanOptions) -> EffectPlan {
     let cutoff = options.energy_cutoff;
     assert!(cutoff > 0.0 && cutoff < 1.0, "energy cutoff {cutoff} is not in (0, 1)");
+    let cutoff = if options.all_effects { SMALLEST_CUTOFF } else { cutoff };
     let areas = Areas::of(scene, flat);
     let lights = lights(scene, flat);
     let (indirect, max_bounces) = indirect(&areas, scene, !lights.is_empty(), cutoff);
-    let decide = |effect, (need, reason): (Need, String)| PlannedEffect { effect, need, reason, cost: None };
+    let lit = !lights.is_empty();
+    let decide = |effect, (need, reason): (Need, String)| {
+        let forced = options.all_effects && need == Need::NotNeeded;
+        let (need, reason) =
+            if forced { (Need::Needed, format!("asked for, although {reason}")) } else { (need, reason) };
+        PlannedEffect { effect, need, reason, cost: None }
+    };
     EffectPlan {
         effects: vec![
             decide(Effect::DirectLight, direct(&lights)),
-            decide(Effect::Shadows, shadows(scene, flat, !lights.is_empty())),
+            decide(Effect::Shadows, shadows(scene, flat, lit)),
             decide(Effect::DiffuseIndirect, indirect),
-            decide(Effect::Mirrors, mirrors(scene, &areas)),
-            decide(Effect::Glass, glass(scene, &areas)),
+            decide(Effect::Mirrors, mirrors(scene, &areas, lit)),
+            decide(Effect::Glass, glass(scene, &areas, lit)),
             decide(Effect::Textures, textures(scene, flat)),
             decide(Effect::VertexColours, vertex_colours(scene)),
             decide(Effect::Sky, sky(scene)),
         ],
-        max_bounces,
+        max_bounces: if options.all_effects { MAX_BOUNCES } else { max_bounces },
         energy_cutoff: cutoff,
     }
 }
@@ -148,8 +154,9 @@ fn indirect(areas: &Areas, scene: &Scene, lit: bool, cutoff: f64) -> ((Need, Str
         }
         let texture = material.albedo_texture.and_then(|t| scene.textures.get(t as usize));
         // A bound for each texel, and the mean for the mean.
-        let most = f64::from(material.albedo.max_element());
-        let mean = material.albedo * texture.map_or(Vec3::ONE, |t| t.mean());
+        let lobes = material.lobes(true, true);
+        let most = f64::from(lobes.most());
+        let mean = lobes.mean(texture.map_or(Vec3::ONE, Texture::mean));
         sum += *area * mean.as_dvec3();
         if most > largest {
             (largest, name) = (most, &material.name);
@@ -167,38 +174,57 @@ fn indirect(areas: &Areas, scene: &Scene, lit: bool, cutoff: f64) -> ((Need, Str
     let most = exact.min(f64::from(MAX_BOUNCES)).max(1.0) as u32;
     let capped = if exact > f64::from(MAX_BOUNCES) { ", ended there though more would be left" } else { "" };
     let why = format!(
-        "mean albedo {mean:.2}, largest {largest:.2} (material \"{name}\"): less than {cutoff} of the energy is left after \
+        "mean reflectance {mean:.2}, largest {largest:.2} (material \"{name}\"): less than {cutoff} of the energy is left after \
          {} reflections on average and after {most} at most{capped}",
         bounces(mean).clamp(1.0, f64::from(MAX_BOUNCES)),
     );
     ((Need::Needed, why), most)
 }
 
-fn mirrors(scene: &Scene, areas: &Areas) -> (Need, String) {
-    let (names, share) =
-        areas.of_those(scene, |m| m.specular > MIRROR_SHARE && m.roughness < MIRROR_ROUGHNESS);
-    if names.is_empty() {
-        return (Need::NotNeeded, "no surface mirrors its surroundings".into());
+fn mirrors(scene: &Scene, areas: &Areas, lit: bool) -> (Need, String) {
+    let mirrored = |m: &Material| m.lobes(true, true).mirror > 0.0;
+    let (names, share) = areas.of_those(scene, mirrored);
+    if !lit || names.is_empty() {
+        let why = if lit {
+            "no surface mirrors its surroundings; the few per cent of plain dielectrics count as diffuse"
+        } else {
+            "nothing emits light"
+        };
+        return (Need::NotNeeded, why.into());
     }
-    let why = format!(
-        "{} of the area mirrors (materials {}); treated as diffuse with its albedo alone, what it would mirror is lost",
-        percent(share),
-        quoted(&names)
-    );
-    (Need::Unsupported, why)
+    let mut why = format!("{} of the area mirrors (materials {})", percent(share), quoted(&names));
+    let (rough, _) = areas.of_those(scene, |m| mirrored(m) && m.lobes(true, true).alpha > 0.0);
+    if !rough.is_empty() {
+        why += &format!(
+            "; approximated: rough ones ({}) by facets, what these shade is reflected on without loss",
+            quoted(&rough)
+        );
+    }
+    let (blurred, _) =
+        areas.of_those(scene, |m| mirrored(m) && m.roughness > 0.0 && m.lobes(true, true).alpha == 0.0);
+    if !blurred.is_empty() {
+        why += &format!("; approximated: slightly rough ones ({}) as sharp mirrors", quoted(&blurred));
+    }
+    (Need::Needed, why)
 }
 
-fn glass(scene: &Scene, areas: &Areas) -> (Need, String) {
-    let (names, share) = areas.of_those(scene, |m| m.transmission > 0.0);
-    if names.is_empty() {
-        return (Need::NotNeeded, "no surface lets light through".into());
+fn glass(scene: &Scene, areas: &Areas, lit: bool) -> (Need, String) {
+    let clear = |m: &Material| m.lobes(true, true).glass > 0.0;
+    let (names, share) = areas.of_those(scene, clear);
+    if !lit || names.is_empty() {
+        let why = if lit { "no surface lets light through" } else { "nothing emits light" };
+        return (Need::NotNeeded, why.into());
     }
-    let why = format!(
-        "{} of the area lets light through (materials {}); treated as opaque, what it would let through is absorbed",
+    let mut why = format!(
+        "{} of the area lets light through (materials {}): closed meshes bend it, others are panes",
         percent(share),
         quoted(&names)
     );
-    (Need::Unsupported, why)
+    let (rough, _) = areas.of_those(scene, |m| clear(m) && m.lobes(true, true).alpha > 0.0);
+    if !rough.is_empty() {
+        why += &format!("; approximated: rough glass ({}) as smooth", quoted(&rough));
+    }
+    (Need::Needed, why)
 }
 
 fn textures(scene: &Scene, flat: &FlatScene) -> (Need, String) {

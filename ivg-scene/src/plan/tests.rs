@@ -126,37 +126,57 @@ fn lights_are_named_with_their_power() {
 
 #[test]
 fn what_cannot_be_done_is_unsupported_and_named() {
-    let mut room = scene(vec![cube(true), cube(true), cube(true)], vec![point(DVec3::splat(0.5))]);
-    room.materials.push(Material {
-        name: "chrome".into(),
-        specular: 1.0,
-        roughness: 0.1,
-        ..Material::default()
-    });
-    room.materials.push(Material { name: "pane".into(), transmission: 0.9, ..Material::default() });
-    room.materials.push(Material {
-        name: "unused".into(),
-        specular: 1.0,
-        roughness: 0.0,
-        ..Material::default()
-    });
-    room.materials[0] = Material { specular: 1.0, roughness: 0.9, ..Material::default() };
-    room.meshes[1].triangle_materials.fill(1);
-    room.meshes[2].triangle_materials.fill(2);
-    let (decided, why) = need(&room, Effect::Mirrors);
-    assert_eq!(decided, Need::Unsupported);
-    assert!(why.contains("33.3 %") && why.contains("\"chrome\"") && why.contains("diffuse"), "{why}");
-    assert!(!why.contains("unused") && !why.contains("default"), "{why}");
-    let (decided, why) = need(&room, Effect::Glass);
-    assert_eq!(decided, Need::Unsupported);
-    assert!(why.contains("\"pane\"") && why.contains("absorbed"), "{why}");
-    assert!(!plan(&room).needs(Effect::Glass));
+    let mut room = scene(vec![cube(true)], vec![point(DVec3::splat(0.5))]);
     assert_eq!(need(&room, Effect::VertexColours).0, Need::NotNeeded);
-    room.meshes[1].colours = vec![[9; 4]; room.meshes[1].positions.len()];
-    room.meshes[1].name = "painted".into();
+    room.meshes[0].colours = vec![[9; 4]; room.meshes[0].positions.len()];
+    room.meshes[0].name = "painted".into();
     let (decided, why) = need(&room, Effect::VertexColours);
     assert_eq!(decided, Need::Unsupported);
     assert!(why.contains("\"painted\"") && why.contains("materials alone"), "{why}");
+    assert!(!plan(&room).needs(Effect::VertexColours));
+}
+
+#[test]
+fn mirrors_and_glass_are_needed_where_the_scene_shows_them() {
+    let mut room = scene(vec![cube(true), cube(true), cube(true)], vec![point(DVec3::splat(0.5))]);
+    assert_eq!(need(&room, Effect::Mirrors).0, Need::NotNeeded);
+    assert_eq!(need(&room, Effect::Glass).0, Need::NotNeeded);
+    let named = |name: &str| Material { name: name.into(), ..Material::default() };
+    let bounces = plan(&room).max_bounces;
+    room.materials.extend([
+        Material { specular: 0.5, roughness: 0.1, ..named("chrome") },
+        Material { transmission: 0.9, roughness: 0.0, ..named("pane") },
+        Material { specular: 0.5, roughness: 0.0, ..named("unused") },
+        Material { specular: 1.0, metallic: true, roughness: 0.6, ..named("tin") },
+    ]);
+    room.meshes[1].triangle_materials.fill(1);
+    room.meshes[2].triangle_materials.fill(2);
+    let (decided, why) = need(&room, Effect::Mirrors);
+    assert_eq!(decided, Need::Needed);
+    assert!(why.contains("33.3 %") && why.contains("slightly rough ones (\"chrome\")"), "{why}");
+    assert!(!why.contains("unused") && !why.contains("default") && !why.contains("facets"), "{why}");
+    let (decided, why) = need(&room, Effect::Glass);
+    assert_eq!(decided, Need::Needed);
+    assert!(why.contains("\"pane\"") && !why.contains("approximated"), "{why}");
+    // What passes glass is not lost.
+    assert!(plan(&room).max_bounces > bounces);
+    room.meshes[1].triangle_materials.fill(4);
+    room.materials[2].roughness = 0.5;
+    assert!(need(&room, Effect::Mirrors).1.contains("rough ones (\"tin\") by facets"));
+    assert!(need(&room, Effect::Glass).1.contains("rough glass (\"pane\") as smooth"));
+    room.lights.clear();
+    assert_eq!(need(&room, Effect::Glass).0, Need::NotNeeded);
+}
+
+#[test]
+fn all_effects_are_planned_when_asked_for() {
+    let room = scene(vec![cube(true)], vec![point(DVec3::splat(0.5))]);
+    let options = PlanOptions { all_effects: true, ..PlanOptions::default() };
+    let plan = analyse(&room, &room.flatten(), &options);
+    assert!(Effect::ALL.iter().all(|effect| plan.needs(*effect)), "{plan:?}");
+    let why = &plan.get(Effect::Glass).expect("a line").reason;
+    assert_eq!(why, "asked for, although no surface lets light through");
+    assert_eq!(plan.max_bounces, 64);
 }
 
 #[test]

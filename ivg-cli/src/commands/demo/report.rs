@@ -61,8 +61,14 @@ impl Report {
             pictures.push(picture(shot, &difference));
         }
         let files = FileSizes::new(input);
+        let uploads: Vec<String> = input.shots.iter().filter_map(|s| s.uploaded).map(table::bytes).collect();
+        let uploads = if uploads.is_empty() {
+            String::new()
+        } else {
+            format!("Meshes uploaded for each picture: {}.\n", uploads.join(", "))
+        };
         let text = format!(
-            "\n{}\nRMSE [W/(m² sr)] and mean CIE76 difference / 100 are against d; drawn on {}.\n\n{}\n{:.1} s in all.\n",
+            "\n{}\nRMSE [W/(m² sr)] and mean CIE76 difference / 100 are against d; drawn on {}.\n{uploads}\n{}\n{:.1} s in all.\n",
             table::layout(&rows, &[1, 2, 3, 4, 5, 6]),
             input.renderer,
             table::layout(&files.rows(), &[1, 2, 3]),
@@ -120,6 +126,7 @@ fn picture(shot: &Shot, difference: &Difference) -> Value {
         "light_bytes": progress.light_bytes,
         "vertices_drawn": shot.vertices,
         "stream_seconds": progress.elapsed.as_secs_f64(),
+        "uploaded_mesh_bytes": shot.uploaded,
         "render_seconds": shot.render_time.as_secs_f64(),
         "rmse": difference.rmse,
         "cie76_over_100": difference.lab,

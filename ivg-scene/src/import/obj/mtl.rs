@@ -124,7 +124,11 @@ pub(super) fn convert(source: &tobj::Material) -> Material {
         specular,
         specular_colour: if specular > 0.0 { mirrored / specular } else { Vec3::ONE },
         metallic: false,
-        roughness: roughness(source.shininess.unwrap_or(0.0)),
+        // Glass is smooth unless it says otherwise.
+        roughness: match source.shininess {
+            None if transmission > 0.0 => 0.0,
+            exponent => roughness(exponent.unwrap_or(0.0)),
+        },
         transmission,
         transmission_colour: filter.unwrap_or(Vec3::ONE),
         thin: false,
