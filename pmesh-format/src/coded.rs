@@ -25,6 +25,7 @@ mod points;
 mod priors;
 mod rans;
 mod ring;
+mod rings;
 mod save;
 mod split;
 mod walk;
@@ -35,13 +36,13 @@ pub(crate) use live::Live;
 pub(crate) use order::arranged;
 pub(crate) use save::{Known, Saver, cells};
 
-use crate::slots::Slots;
 use attributes::{Brought, Wedged};
 use cut::Cuts;
 use geometry::{Cell, Residuals};
 use models::Binary;
 use points::{Point, Points};
 use rans::Coder;
+use rings::Rings;
 
 /// What is wrong with a payload, and at which byte of it.
 pub(crate) type Fault = (Code, usize);
@@ -52,7 +53,7 @@ const SLOTS_A_BYTE: u64 = 64;
 /// The least payload of a coded packet that follows so many vertices (PMESH-COD-12).
 pub(crate) fn least_bytes(entry: &PacketEntry) -> u64 {
     let count = |range: &Range<u32>| u64::from(range.end.saturating_sub(range.start));
-    4 + (count(&entry.wedges) + count(&entry.faces)) / 4 + u64::from(entry.vertices.start) / 64
+    8 + (count(&entry.wedges) + count(&entry.faces)) / 4 + u64::from(entry.vertices.start) / 64
 }
 
 /// The cell of a point.
@@ -77,8 +78,6 @@ struct Shape {
 struct Models {
     /// Whether a vertex is split (once more); by how often it was in this packet, its history, faces and scale.
     parents: [Binary; PARENTS],
-    /// Whether a run of faces that go round switches and a face comes at either end.
-    regular: Binary,
     /// Whether a face switches; by what the one before did.
     switches: [Binary; 3],
     /// Whether there is one more new face on this side; by side, how many there are, and whether one is expected.
@@ -98,9 +97,16 @@ impl Models {
         let even = Binary::new(1 << 14);
         Self {
             parents: [Binary::new(1 << 13); PARENTS],
-            regular: Binary::new(32_000),
             switches: [even; 3],
-            faces: [even; 16],
+            faces: core::array::from_fn(|k| {
+                Binary::new(if k % 8 == 1 {
+                    24_000
+                } else if k % 8 == 0 {
+                    1 << 14
+                } else {
+                    4_000
+                })
+            }),
             thirds: [Binary::new(30_000); 2],
             cuts: Cuts::new(),
             residuals: Residuals::new(),
@@ -114,7 +120,7 @@ pub(crate) struct State {
     models: Box<Models>,
     packets: u32,
     corners: Vec<[u32; 3]>,
-    slots: Slots,
+    rings: Rings,
     points: Points,
     /// [`Shape::history`] of each vertex.
     histories: Vec<u32>,
@@ -149,6 +155,20 @@ struct Changes {
     wedges: Brought,
 }
 
+impl Changes {
+    /// Notes which of so many slots switch, [`MOST`](ring::MOST) at most: the first of ascending order in bit 0.
+    fn switch(&mut self, count: usize, mask: u32) {
+        self.counts.push(count as u32);
+        self.masks.push(mask);
+    }
+
+    /// The same of any number.
+    fn switch_long(&mut self, chosen: &[bool]) {
+        self.counts.push(chosen.len() as u32);
+        self.long.extend_from_slice(chosen);
+    }
+}
+
 impl State {
     /// Before the first packet.
     pub(crate) fn new(base: u32, plan: Option<Plan>) -> Self {
@@ -156,7 +176,7 @@ impl State {
             models: Box::new(Models::new()),
             packets: 0,
             corners: Vec::new(),
-            slots: Slots::default(),
+            rings: Rings::default(),
             points: Points::default(),
             histories: Vec::new(),
             parents: Vec::new(),
@@ -189,27 +209,22 @@ impl State {
             self.wedged = Some(wedged);
         }
         let first = extent.vertices.start.max(self.base);
-        for vertex in (first..self.base + self.parents.len() as u32).rev() {
-            let split = (vertex - self.base) as usize;
-            let before = split.checked_sub(1).map_or(0, |k| self.face_ends[k]);
-            let before = before.max(extent.faces.start);
-            self.pop_faces(before.min(self.corners.len() as u32));
-            let parent = self.parents[split];
-            for &slot in self.slots.of(vertex) {
-                self.corners.as_flattened_mut()[slot as usize] = parent;
+        self.corners.truncate(extent.faces.start as usize);
+        // Corners on new vertices go back to what these came from.
+        for corner in self.corners.as_flattened_mut() {
+            while *corner >= first {
+                *corner = self.parents[(*corner - self.base) as usize];
             }
-            self.slots.merge(vertex, parent, |_, _| {});
-            self.parents.pop();
-            self.face_ends.pop();
         }
-        self.pop_faces(extent.faces.start);
+        self.parents.truncate((first - self.base) as usize);
+        self.face_ends.truncate((first - self.base) as usize);
         for &(vertex, shape) in changes.shapes.iter().rev() {
             self.set_shape(vertex, shape);
         }
         let start = extent.vertices.start as usize;
         self.points.truncate(start);
         self.histories.truncate(start);
-        self.slots.resize(start, usize::MAX);
+        self.rings.rebuild(start, &self.corners);
     }
 
     /// The cell of a vertex.
@@ -236,15 +251,6 @@ impl State {
     fn push_vertex(&mut self, cell: Cell, shape: Shape) {
         self.points.push(cell, shape);
         self.histories.push(shape.history);
-    }
-
-    /// Takes faces away until there are that many.
-    fn pop_faces(&mut self, count: u32) {
-        while self.corners.len() > count as usize {
-            for corner in self.corners.pop().unwrap_or_default() {
-                self.slots.pop(corner);
-            }
-        }
     }
 }
 

@@ -8,7 +8,7 @@ mod symbols;
 use pmesh_format::{Attributes, Header, PacketEntry};
 
 use super::lattice::Lattice;
-use super::starts::{ALONG, HEIGHTS};
+use super::starts::{ALONG, COUNTS, HEIGHTS, RANKS};
 use super::{Fault, Tables};
 use attributes::Wedged;
 use cells::Cells;
@@ -34,11 +34,8 @@ type Cell = [i64; 3];
 #[derive(Debug, Clone)]
 struct Models {
     parents: Vec<Binary>,
-    regular: Binary,
-    single: Vec<Binary>,
-    further: Vec<Binary>,
-    seed: Vec<Binary>,
-    extend: Vec<Binary>,
+    counts: Vec<Sixteen>,
+    ranks: Vec<Sixteen>,
     switches: Vec<Binary>,
     faces: Vec<Binary>,
     thirds: Vec<Binary>,
@@ -95,17 +92,14 @@ fn log2(x: i64) -> i64 {
     i64::from(x.max(1).ilog2())
 }
 
-/// The class c and the logarithm g of PMESH-COD-05.
+/// The class c of PMESH-COD-05.
 fn class(x: i64) -> i64 {
     4 * log2(x) + ((x.max(1) << 2 >> log2(x)) & 3)
 }
 
-fn logarithm(x: i64) -> i64 {
-    8 * log2(x) + ((x.max(1) << 3 >> log2(x)) & 7)
-}
-
-fn scale(square: i64) -> usize {
-    if square == 0 { 0 } else { ((log2(square) + 2) / 2).min(15) as usize }
+/// The scale for a distance.
+fn scale(distance: i64) -> usize {
+    if distance == 0 { 0 } else { (log2(distance) + 1).min(15) as usize }
 }
 
 fn bits(most: i64) -> u32 {
@@ -116,8 +110,8 @@ fn minus(a: Cell, b: Cell) -> Cell {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-fn square(a: Cell) -> i64 {
-    a.iter().map(|x| x * x).sum()
+fn distance(a: Cell, b: Cell) -> i64 {
+    minus(a, b).iter().map(|x| x.abs()).sum()
 }
 
 impl Coded {
@@ -125,13 +119,17 @@ impl Coded {
         let many = |p: i64, count: usize| vec![Binary { p, n: 0 }; count];
         let models = Models {
             parents: many(1 << 13, 8 * 9 * 16),
-            regular: Binary { p: 32_000, n: 0 },
-            single: many(1 << 11, 8 * 16),
-            further: many(1 << 14, 8),
-            seed: many(1 << 14, 4 * 16 * 16),
-            extend: many(1 << 14, 4 * 2 * 8 * 16),
+            counts: COUNTS.iter().flat_map(|starts| vec![Sixteen::new(starts); 4]).collect(),
+            ranks: RANKS
+                .chunks(4)
+                .flat_map(|of_run| of_run.iter().map(Sixteen::new).cycle().take(36))
+                .collect(),
             switches: many(1 << 14, 3),
-            faces: many(1 << 14, 16),
+            faces: [1 << 14, 24_000, 4_000, 4_000, 4_000, 4_000, 4_000, 4_000]
+                .repeat(2)
+                .into_iter()
+                .map(|p| Binary { p, n: 0 })
+                .collect(),
             thirds: many(30_000, 2),
             along: ALONG.iter().map(Sixteen::new).collect(),
             heights: HEIGHTS.iter().map(Sixteen::new).collect(),
@@ -147,11 +145,7 @@ impl Coded {
         entry: &PacketEntry,
         payload: &[u8],
     ) -> Result<(), Fault> {
-        if payload.len() < 4 {
-            return fault(CODED_LENGTH);
-        }
-        let x = u64::from(u32::from_le_bytes([payload[0], payload[1], payload[2], payload[3]]));
-        let mut symbols = Symbols { x, payload, at: 4, missing: false };
+        let Some(mut symbols) = Symbols::new(payload) else { return fault(CODED_LENGTH) };
         let mut brought = Brought::default();
         let cells = Cells::new(header);
         let (start, end) = (entry.vertices.start as usize, entry.vertices.end as usize);
@@ -160,26 +154,32 @@ impl Coded {
             self.base(&mut symbols, &mut brought, &cells, base, entry.faces.end as usize)?;
         }
         let (mut parent, mut times, mut looked_at) = (0, 0, 0);
-        for vertex in start.max(base)..end {
-            loop {
+        let mut vertex = start.max(base);
+        while vertex < end {
+            let mut parents = Vec::new();
+            while parents.len() < 64.min(end - vertex) && parent < vertex {
                 let model = self.parent_model(parent, times);
                 if symbols.bit(&mut self.models.parents[model]) {
-                    break;
-                }
-                parent += 1;
-                times = 0;
-                if parent >= vertex {
-                    return fault(PARENT);
+                    parents.push(parent);
+                    times += 1;
+                } else {
+                    parent += 1;
+                    times = 0;
                 }
             }
-            times += 1;
-            looked_at += self.spokes(parent).len();
-            if looked_at > 64 * payload.len() {
-                return fault(CODED_WORK);
+            if parents.is_empty() {
+                return fault(PARENT);
             }
-            self.split(&mut symbols, &mut brought, &cells, vertex, parent, entry.faces.end as usize)?;
-            if symbols.missing {
-                return fault(CODED_LENGTH);
+            for parent in parents {
+                looked_at += self.spokes(parent).len();
+                if looked_at > 64 * payload.len() {
+                    return fault(CODED_WORK);
+                }
+                self.split(&mut symbols, &mut brought, &cells, vertex, parent, entry.faces.end as usize)?;
+                if symbols.missing() {
+                    return fault(CODED_LENGTH);
+                }
+                vertex += 1;
             }
         }
         if self.corners.len() != entry.faces.end as usize {
@@ -189,17 +189,18 @@ impl Coded {
             let cells: Vec<Cell> = self.known.iter().map(|known| known.cell).collect();
             self.wedged.read(&mut symbols, header, entry, &cells, &brought)?;
         }
-        if symbols.missing || symbols.x != 1 << 16 {
+        if !symbols.at_end() {
             return fault(CODED_LENGTH);
         }
         let faces = (entry.faces.end - entry.faces.start) as usize;
         let wedges = (entry.wedges.end - entry.wedges.start) as usize;
-        let demanded = (4 + (wedges + faces) / 4 + start / 64).max(looked_at.div_ceil(64));
+        let demanded = (8 + (wedges + faces) / 4 + start / 64).max(looked_at.div_ceil(64));
         let left = symbols.at;
-        if left < payload.len() && payload.len() > demanded {
+        let raw_at = symbols.raw_at() as usize;
+        if left < raw_at && payload.len() > demanded {
             return Err(Fault { code: CODED_LENGTH, at: left });
         }
-        if payload[left..].iter().any(|&byte| byte != 0) {
+        if payload[left..raw_at].iter().any(|&byte| byte != 0) || symbols.rest() != 0 {
             return Err(Fault { code: CODED_PADDING, at: left });
         }
         self.packets += 1;
@@ -266,7 +267,7 @@ impl Coded {
             }
             brought.positions.push(cells.position(symbols, cell)?);
             self.known.push(Known { cell, scale: 0, height: 0, packet: self.packets, split: false });
-            if symbols.missing {
+            if symbols.missing() {
                 return fault(CODED_LENGTH);
             }
         }
@@ -276,7 +277,7 @@ impl Coded {
         }
         for _ in 0..count {
             let face = [0; 3].map(|_: usize| symbols.raw(bits(base as i64 - 1)) as usize);
-            if symbols.missing {
+            if symbols.missing() {
                 return fault(CODED_LENGTH);
             }
             if face.iter().any(|&corner| corner >= base) {
@@ -316,14 +317,13 @@ impl Coded {
         let (spokes, round) = ordered(&ascending);
         let m = spokes.len();
         let here = self.known[parent].cell;
-        let edges: Vec<i64> =
-            spokes.iter().map(|spoke| square(minus(self.known[spoke.out].cell, here))).collect();
+        let edges: Vec<i64> = spokes.iter().map(|spoke| distance(self.known[spoke.out].cell, here)).collect();
         let mut switches = vec![false; m];
         let mut thirds: [Vec<usize>; 2] = [Vec::new(), Vec::new()];
         let mut inside = Vec::new();
         let mut neighbours = vec![(parent, here)];
-        if round && symbols.bit(&mut self.models.regular) {
-            let (first, count) = run(symbols, &mut self.models, &edges);
+        let regular = if round { run(symbols, &mut self.models, &edges)? } else { None };
+        if let Some((first, count)) = regular {
             if self.corners.len() + 2 > most_faces {
                 return fault(CODED_FACES);
             }
@@ -352,7 +352,7 @@ impl Coded {
             }
             self.escape(symbols, &spokes, &switches, &mut thirds, vertex, parent, most_faces)?;
         }
-        let (cell, height) = self.cell(symbols, &spokes, &switches, &neighbours, parent);
+        let (cell, height, reach) = self.cell(symbols, &spokes, &switches, &neighbours, parent);
         if (0..3).any(|k| cell[k] < 0 || cell[k] > cells.most[k]) {
             return fault(POSITION);
         }
@@ -371,17 +371,15 @@ impl Coded {
         brought.faces.extend(new);
         brought.parents.push(parent);
         // What is remembered.
-        let k = neighbours.len() as i64;
-        let around: i64 = neighbours.iter().map(|&(_, there)| square(minus(there, cell))).sum();
         let all: i64 = edges.iter().take(32).sum();
         let inner: i64 = inside.iter().map(|&k| edges[k]).sum();
-        let apart = square(minus(cell, here));
+        let apart = distance(cell, here);
         let old = &mut self.known[parent];
         old.scale = scale((all + apart - inner) / (m as i64 + 1 - inside.len() as i64));
         old.height = (height + old.height) / 2;
         old.packet = self.packets;
         old.split = true;
-        self.known.push(Known { cell, scale: scale(around / k), height, packet: self.packets, split: false });
+        self.known.push(Known { cell, scale: scale(reach), height, packet: self.packets, split: false });
         Ok(())
     }
 
@@ -423,7 +421,7 @@ impl Coded {
                     return fault(FACE_VERTICES);
                 }
                 thirds[side].push(x);
-                if symbols.missing {
+                if symbols.missing() {
                     return fault(CODED_LENGTH);
                 }
                 if self.corners.len() + thirds[0].len() + thirds[1].len() > most_faces {
@@ -434,7 +432,7 @@ impl Coded {
         Ok(())
     }
 
-    /// PMESH-COD-10: the cell of the new vertex and its height class.
+    /// PMESH-COD-10: the cell of the new vertex, its height class, and the distance of its scale.
     fn cell(
         &mut self,
         symbols: &mut Symbols<'_>,
@@ -442,11 +440,12 @@ impl Coded {
         switches: &[bool],
         neighbours: &[(usize, Cell)],
         parent: usize,
-    ) -> (Cell, i64) {
+    ) -> (Cell, i64, i64) {
         let here = self.known[parent].cell;
         let k = neighbours.len() as i64;
         let sum = |f: &dyn Fn(Cell) -> i64| neighbours.iter().map(|&(_, cell)| f(cell)).sum::<i64>();
-        let mean = [0, 1, 2].map(|axis| (2 * sum(&|cell| cell[axis]) + k).div_euclid(2 * k));
+        let mean =
+            [0, 1, 2].map(|axis| (2 * (sum(&|cell| cell[axis]) + here[axis]) + k + 1).div_euclid(2 * k + 2));
         let spread = [0, 1, 2].map(|axis| class(8 * sum(&|cell| (cell[axis] - mean[axis]).abs()) / k + 1));
         let mut n = [0i64; 3];
         for (spoke, _) in spokes.iter().zip(switches).filter(|(_, switch)| **switch) {
@@ -477,6 +476,7 @@ impl Coded {
         let heights: i64 = neighbours.iter().map(|&(v, _)| self.known[v].height).sum();
         let height = residual(symbols, &mut self.models.heights, heights / k);
         cell[main] = wrap(expected + height);
-        (cell, class(2 * height.abs() + 1) % 256)
+        let reach = sum(&|there| distance(there, mean)) / k + distance(cell, mean);
+        (cell, class(2 * height.abs() + 1) % 256, reach)
     }
 }

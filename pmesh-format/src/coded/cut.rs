@@ -1,21 +1,33 @@
 //! Which faces of the parent switch to the new vertex, where they go round and it takes a run of them (PMESH-COD-09).
 
-use super::geometry::{divide, logarithm};
-use super::models::Binary;
+use super::Fault;
+use super::models::Symbols;
+use super::priors::{COUNTS, RANKS};
 use super::rans::Coder;
-use super::ring::FEW;
+use crate::code::codes;
+
+/// Numbers of faces that have models of their own: 2 to 10 or more.
+const SIZES: usize = 9;
+
+/// Degrees by which lengths stand out.
+const LEVELS: usize = 4;
+
+/// Runs of 1, 2, 3, 4 or more faces.
+const RUNS: usize = 4;
+
+/// The greatest number that one symbol says; with this one a raw number follows.
+const LAST: usize = 15;
+
+/// Bits of that raw number.
+const MORE_BITS: u32 = 5;
 
 /// The models of a cut.
 #[derive(Clone, Debug)]
 pub(super) struct Cuts {
-    /// Whether a single face switches; by the number of faces and the length of the longest edge.
-    single: [Binary; 8 * 16],
-    /// Whether it is not yet the face in this place.
-    further: [Binary; 8],
-    /// Whether the longest edge that is left goes over; by how many were longer, its length and that of its neighbours.
-    seed: [Binary; 4 * 16 * 16],
-    /// Whether the next edge goes over as well; by how many did, the side, how many are left, and its length.
-    extend: [Binary; 4 * 2 * 8 * 16],
+    /// How many faces switch, 0 for a split that is not regular; by the number of faces and how much the longest edge stands out.
+    counts: [[Symbols; LEVELS]; SIZES],
+    /// The rank of the run among all; by its faces, the number of faces, and how much the first rank stands out.
+    ranks: [[[Symbols; LEVELS]; SIZES]; RUNS],
 }
 
 /// A run of faces: the first one, and how many.
@@ -27,120 +39,92 @@ pub(super) struct Run {
 
 impl Cuts {
     pub(super) fn new() -> Self {
-        let even = Binary::new(1 << 14);
         Self {
-            single: [Binary::new(1 << 11); 128],
-            further: [even; 8],
-            seed: [even; 1024],
-            extend: [even; 1024],
+            counts: COUNTS.map(|starts| [Symbols::new(starts); LEVELS]),
+            ranks: core::array::from_fn(|run| {
+                [core::array::from_fn(|level| Symbols::new(RANKS[run * LEVELS + level])); SIZES]
+            }),
         }
     }
 
-    /// A run of some but not all of at least two faces. `lengths`: the squared length of the edge at which each of the `count`
-    /// faces begins, then zeros.
+    /// A run of some but not all of at least two faces; `None` if the split is not regular. `lengths`: those of the edges at which
+    /// each of the `count` faces begins, twice, and zeros behind them; `first`: the face with the first slot.
     #[inline(always)]
     pub(super) fn code<C: Coder, const N: usize>(
         &mut self,
         coder: &mut C,
-        lengths: &[u64; N],
-        count: usize,
-        run: Run,
-    ) -> Run {
-        let wrap = |k: usize| if k >= count { k - count } else { k };
-        let length = |k: usize| lengths[k & (N - 1)];
-        if count == 2 {
-            let second = coder.bit(&mut self.further[7], run.first == 1);
-            return Run { first: usize::from(second), count: 1 };
-        }
-        let all = if N == FEW { lengths.iter().sum() } else { lengths[..count].iter().sum() };
-        let mean = logarithm(divide(all, count as u32)) as i32;
-        let step = |k: usize| (((logarithm(length(k)) as i32 - mean) >> 2) + 8).clamp(0, 15) as usize;
-        // Edges by descending length, equal ones by place: looked for one by one, since the first few are enough.
-        let mut ranking = Ranking::<N>::new(count, length);
-        let mut k = ranking.next();
-        let faces = count.min(10) - 3;
-        // Whether the edge at which a face begins lies inside the run.
-        let inside = |k: usize| {
-            let from = wrap(k + count - run.first.min(count));
-            from >= 1 && from < run.count
-        };
-        if coder.bit(&mut self.single[faces * 16 + step(k)], run.count == 1) {
-            let around = Ranking::<N>::new(count, |k| length(k) + length(wrap(k + 1)));
-            return self.single(coder, around, count, run.first);
-        }
-        let mut skipped = 0u32;
-        let mut rank = 0;
-        while rank + 1 < count {
-            let beside = step(wrap(k + 1)).max(step(wrap(k + count - 1)));
-            let model = &mut self.seed[(rank.min(3) * 16 + step(k)) * 16 + beside];
-            if coder.bit(model, inside(k)) {
-                break;
-            }
-            skipped |= 1 << k;
-            rank += 1;
-            k = ranking.next();
-        }
-        let (mut low, mut high, mut inner) = (k, k, 1usize);
-        let left_first = length(wrap(k + count - 1)) >= length(wrap(k + 1));
-        for side in 0..2 {
-            let left = (side == 0) == left_first;
-            while inner + 3 <= count {
-                let next = if left { wrap(low + count - 1) } else { wrap(high + 1) };
-                if skipped >> next & 1 == 1 {
-                    break;
-                }
-                let context = ((inner.min(4) - 1) * 2 + side) * 8 + (count - inner).min(7);
-                if !coder.bit(&mut self.extend[context * 16 + step(next)], inside(next)) {
-                    break;
-                }
-                inner += 1;
-                if left { low = next } else { high = next }
-            }
-        }
-        Run { first: wrap(low + count - 1), count: inner + 1 }
-    }
-
-    /// One face: the place among all by the descending length of the edges beside it.
-    #[inline(always)]
-    fn single<C: Coder, const N: usize>(
-        &mut self,
-        coder: &mut C,
-        mut ranking: Ranking<N>,
+        lengths: &[[i32; N]; 3],
         count: usize,
         first: usize,
-    ) -> Run {
-        let mut rank = 0;
-        let mut face = ranking.next();
-        while rank + 1 < count && coder.bit(&mut self.further[rank.min(6)], face != first) {
-            rank += 1;
-            face = ranking.next();
+        given: Option<Run>,
+    ) -> Result<Option<Run>, Fault> {
+        let size = count.min(SIZES + 1) - 2;
+        let (mut all, mut most) = (0, 0);
+        for k in 0..N {
+            let length = if k < count { lengths[0][k] } else { 0 };
+            all += length;
+            most = length.max(most);
         }
-        Run { first: face, count: 1 }
+        let level = stands_out(4 * most * count as i32, [5 * all, 6 * all, 8 * all]);
+        let known = given.map_or(0, |run| run.count);
+        let taken = number(coder, &mut self.counts[size][level], known);
+        if taken == 0 {
+            return Ok(None);
+        }
+        if taken >= count {
+            return Err((codes::CORNER, 0));
+        }
+        // The edges inside a run, or those at either end of a single face.
+        let (from, to) = if taken == 1 { (0, 2) } else { (1, taken) };
+        let mut weights = [0i32; N];
+        for j in from..to {
+            if let Some(shifted) = lengths.as_flattened().get(j..).and_then(|all| all.first_chunk::<N>()) {
+                for k in 0..N {
+                    weights[k] += shifted[k];
+                }
+            }
+        }
+        // By descending weight, equal ones by how far they are behind the first face; 0 for places without a face.
+        let mut keys = [0u32; N];
+        for k in 0..N {
+            let behind = if k >= first { k - first } else { k + count - first } as u32;
+            keys[k] = if k < count { ((weights[k] as u32) << 5 | (31 - (behind & 31))) + 1 } else { 0 };
+        }
+        let best = keys.iter().fold(0, |most, &key| key.max(most));
+        let second = keys.iter().fold(0, |most, &key| if key == best { most } else { key.max(most) });
+        // At most 2²⁷ × 32 × 8 would not fit.
+        let apart = u64::from(((best - 1) >> 5) - ((second - 1) >> 5)) * 8 * count as u64;
+        let level = [1, 2, 4].iter().map(|&x| usize::from(apart >= x * all as u64)).sum::<usize>();
+        let mut ranks = [0u32; N];
+        for &key in &keys {
+            for k in 0..N {
+                ranks[k] += u32::from(key > keys[k]);
+            }
+        }
+        let known = given.map_or(0, |run| ranks[run.first] as usize);
+        let found = number(coder, &mut self.ranks[taken.min(RUNS) - 1][size][level], known);
+        if found >= count {
+            return Err((codes::CORNER, 0));
+        }
+        let mut first = 0;
+        for k in 0..N {
+            first |= if ranks[k] == found as u32 && k < count { k } else { 0 };
+        }
+        Ok(Some(Run { first, count: taken }))
     }
 }
 
-/// Places by descending length, equal ones ascending.
-struct Ranking<const N: usize> {
-    /// Length × 64 + 63 − place; 0 for those that have been named and those that do not exist.
-    keys: [u64; N],
+#[inline(always)]
+fn stands_out(x: i32, thresholds: [i32; LEVELS - 1]) -> usize {
+    thresholds.iter().map(|&threshold| usize::from(x >= threshold)).sum()
 }
 
-impl<const N: usize> Ranking<N> {
-    #[inline(always)]
-    fn new(count: usize, length: impl Fn(usize) -> u64) -> Self {
-        let mut keys = [0; N];
-        for (k, key) in keys.iter_mut().enumerate().take(if N == FEW { N } else { count }) {
-            *key = if k < count { length(k) << 6 | (63 - k as u64) } else { 0 };
-        }
-        Self { keys }
+/// A number up to 46.
+#[inline(always)]
+fn number<C: Coder>(coder: &mut C, model: &mut Symbols, known: usize) -> usize {
+    let symbol = coder.symbol(model, known.min(LAST));
+    if symbol == LAST {
+        return LAST + coder.raw(MORE_BITS, known.wrapping_sub(LAST) as u32) as usize;
     }
-
-    /// The next place.
-    #[inline(always)]
-    fn next(&mut self) -> usize {
-        let most = self.keys.iter().fold(0, |most, &key| most.max(key));
-        let place = 63 - (most & 63) as usize;
-        self.keys[place & (N - 1)] = 0;
-        place
-    }
+    symbol
 }

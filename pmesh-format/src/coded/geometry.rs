@@ -1,6 +1,5 @@
 //! Where the next vertex is, in whole numbers: predictions, and how far from them (PMESH-COD-10).
 
-use super::Point;
 use super::models::Symbols;
 use super::priors::{HEIGHTS, SPREADS};
 use super::rans::Coder;
@@ -35,14 +34,6 @@ pub(super) fn class(x: u64) -> u32 {
     4 * octave + ((x << 2 >> octave) & 3) as u32
 }
 
-/// Eight times the logarithm to base 2 of a number, linear inside octaves; 0 for 0.
-#[inline(always)]
-pub(super) fn logarithm(x: u64) -> u32 {
-    let x = x.max(1);
-    let octave = x.ilog2();
-    8 * octave + ((x << 3 >> octave) & 7) as u32
-}
-
 /// Numbers that [`divide`] divides by without dividing, and one more.
 const DIVISORS: usize = 2 * MOST + 8;
 
@@ -75,9 +66,10 @@ pub(super) fn difference(a: Cell, b: Cell) -> [i64; 3] {
     core::array::from_fn(|k| i64::from(a[k]) - i64::from(b[k]))
 }
 
+/// The sum of the magnitudes of the coordinates of the difference of two cells.
 #[inline(always)]
-pub(super) fn squared(d: [i64; 3]) -> u64 {
-    (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) as u64
+pub(super) fn apart(a: Cell, b: Cell) -> i32 {
+    (a[0] - b[0]).abs() + (a[1] - b[1]).abs() + (a[2] - b[2]).abs()
 }
 
 #[inline(always)]
@@ -85,14 +77,10 @@ pub(super) fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// A number of up to 32 equally probable bits, the lowest 16 first.
+/// A number of up to 32 equally probable bits.
 #[inline(always)]
 pub(super) fn raw(coder: &mut impl Coder, bits: u32, value: u32) -> u32 {
-    if bits <= 16 {
-        return coder.raw(bits, value);
-    }
-    let low = coder.raw(16, value & 0xFFFF);
-    low | coder.raw(bits - 16, value >> 16) << 16
+    coder.raw(bits, value)
 }
 
 /// A residual of that class.
@@ -125,11 +113,16 @@ pub(super) fn residual<C: Coder>(
         extra_is = coder.raw(5, extra).min(27);
         first = 1 << extra_is;
     }
-    // Raw numbers of no bits are none: nothing branches on whether there are any.
-    let size_is = first + raw(coder, extra_is, size.wrapping_sub(first));
-    let low = raw(coder, shift, low);
-    let negative = coder.raw(u32::from(size_is > 0), u32::from(whole < 0 && size > 0)) == 1;
-    let whole = if negative { -i64::from(size_is) } else { i64::from(size_is) };
+    // The bits of the size, those below, the sign: all at once.
+    let signed = u32::from(first > 0);
+    let given = u64::from(size.wrapping_sub(first)) & ((1 << extra_is) - 1)
+        | u64::from(low) << extra_is
+        | u64::from(whole < 0) << (extra_is + shift);
+    let bits = coder.raw_long(extra_is + shift + signed, given);
+    let size_is = first + (bits as u32 & ((1 << extra_is) - 1));
+    let low = (bits >> extra_is) as u32 & ((1 << shift) - 1);
+    let negative = (bits >> (extra_is + shift)) as i64;
+    let whole = (i64::from(size_is) ^ -negative) + negative;
     ((whole << shift) + i64::from(low) - half) as i32
 }
 
@@ -151,7 +144,7 @@ const FIRSTS: [(u32, u32); 16] = {
 /// What is known of the place of a new vertex.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    /// The mean of its neighbours.
+    /// The mean of its neighbours, the parent counted twice.
     mean: Cell,
     /// How far they are from it along each axis, as classes.
     spreads: [u32; 3],
@@ -160,29 +153,54 @@ pub(super) struct Place {
     parent: Cell,
     /// The class of the height above the plane.
     height: u32,
+    /// The mean of how far they are from their mean, along all axes together.
+    apart: u32,
+}
+
+/// What the neighbours of a new vertex have in sum.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around {
+    pub(super) count: u32,
+    /// Of their cells; none of which has negative coordinates.
+    pub(super) cells: Cell,
+    /// Of their classes of height.
+    pub(super) heights: u32,
+}
+
+impl Around {
+    /// Their mean, the parent counted twice.
+    #[inline(always)]
+    pub(super) fn mean(&self, parent: Cell) -> Cell {
+        let count = self.count + 1;
+        core::array::from_fn(|k| {
+            divide(2 * u64::from((self.cells[k] + parent[k]) as u32) + u64::from(count), 2 * count) as i32
+        })
+    }
 }
 
 impl Place {
-    /// From the neighbours, the parent one of them, their sum, and the normal of the faces that switch.
+    /// With the mean of the neighbours, the sums of how far they are from it along each axis, and the normal of the faces that
+    /// switch.
     #[inline(always)]
-    pub(super) fn new(neighbours: &[Point], sum: Point, parent: Cell, normal: [i64; 3]) -> Self {
-        let count = neighbours.len().max(1) as u32;
-        // Cells that are there are not negative.
-        let mean: Cell = core::array::from_fn(|k| {
-            divide(2 * u64::from(sum[k] as u32) + u64::from(count), 2 * count) as i32
-        });
-        let mut apart = [0u32; 3];
-        for neighbour in neighbours {
-            for k in 0..3 {
-                apart[k] += neighbour[k].abs_diff(mean[k]);
-            }
-        }
-        let spreads = core::array::from_fn(|k| class(divide(8 * u64::from(apart[k]), count) + 1));
-        let height = divide((sum[3] >> 16) as u64, count) as u32;
+    pub(super) fn new(around: Around, [parent, mean]: [Cell; 2], apart: [u32; 3], normal: [i64; 3]) -> Self {
+        let count = around.count;
+        let spreads = apart.map(|apart| class(divide(8 * u64::from(apart), count) + 1));
+        let height = divide(around.heights.into(), count) as u32;
+        let apart = divide(apart.iter().map(|&x| u64::from(x)).sum(), count) as u32;
         // At most 24 bits are left of each component, so that every product below fits in 53.
         let bits = normal.iter().fold(0, |all, n| all | n.unsigned_abs()).max(1).ilog2() + 1;
         let normal = normal.map(|n| n >> bits.saturating_sub(24));
-        Self { mean, spreads, normal, parent, height }
+        Self { mean, spreads, normal, parent, height, apart }
+    }
+
+    pub(super) fn parent(&self) -> Cell {
+        self.parent
+    }
+
+    /// About how far the neighbours are from a vertex in that cell.
+    #[inline(always)]
+    pub(super) fn reach(&self, cell: Cell) -> u32 {
+        self.apart + apart(self.mean, cell) as u32
     }
 
     /// The cell of the vertex, and the class of its height.

@@ -23,14 +23,14 @@ impl State {
         if !reader.at_end() {
             return Err(LENGTH);
         }
-        let left = reader.left().count();
         let needed = least_bytes(extent).max(changes.looked_at.div_ceil(SLOTS_A_BYTE));
+        let (at, mut left) = reader.left();
         // Padding is for what has to be long enough, and for nothing else.
-        if left > 0 && payload.len() as u64 > needed {
-            return Err((codes::CODED_LENGTH, payload.len() - left));
+        if reader.count_left() > 0 && payload.len() as u64 > needed {
+            return Err((codes::CODED_LENGTH, at));
         }
-        if reader.left().any(|byte| byte != 0) {
-            return Err((codes::CODED_PADDING, payload.len() - left));
+        if left.any(|byte| byte != 0) {
+            return Err((codes::CODED_PADDING, at));
         }
         if !self.are_finite(header, extent) {
             return Err((codes::POSITION, 0));

@@ -16,7 +16,7 @@ const WORD_BITS: u32 = 16;
 
 /// One side of the coder. What goes through it comes out again: the writer gives values, the reader finds them and ignores
 /// what it is given.
-pub(super) trait Coder {
+pub(super) trait Coder: Default {
     /// A choice of two.
     fn bit(&mut self, model: &mut Binary, value: bool) -> bool;
 
@@ -28,141 +28,183 @@ pub(super) trait Coder {
         false
     }
 
-    /// A number of that many bits, 16 at most, all equally probable.
-    fn raw(&mut self, bits: u32, value: u32) -> u32;
+    /// A number of that many bits, at most 57 (what is left of 64 behind up to seven that have been read), all equally probable.
+    fn raw_long(&mut self, bits: u32, value: u64) -> u64;
+
+    /// A number of that many bits, 32 at most, all equally probable.
+    #[inline(always)]
+    fn raw(&mut self, bits: u32, value: u32) -> u32 {
+        self.raw_long(bits, value.into()) as u32
+    }
 }
 
-/// What a writer has noted: a range of probabilities, or with frequency 0 that many raw bits.
+/// The range of probabilities of a symbol.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     start: u16,
     frequency: u16,
-    bits: u8,
 }
 
 /// The writer.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Writer {
     steps: Vec<Step>,
+    /// Raw bits in bytes, the first one that which will be last.
+    raw: Vec<u8>,
+    /// Raw bits.
+    bits: usize,
 }
 
 impl Writer {
-    /// The payload: the state as u32, then words.
-    pub(super) fn finish(self) -> Vec<u8> {
+    /// The payload, of so many bytes at least: two states, words, padding, raw bits from the end on.
+    pub(super) fn finish(self, least: usize) -> Vec<u8> {
         let mut words: Vec<u16> = Vec::new();
-        let mut state = LEAST;
-        for step in self.steps.iter().rev() {
-            let frequency = u32::from(step.frequency);
-            if frequency == 0 {
-                let bits = u32::from(step.bits);
-                if state.unbounded_shr(u32::BITS.saturating_sub(bits)) != 0 {
-                    words.push(state as u16);
-                    state >>= WORD_BITS;
-                }
-                state = state << bits | u32::from(step.start);
-            } else {
-                if state >> (u32::BITS - PROBABILITY_BITS) >= frequency {
-                    words.push(state as u16);
-                    state >>= WORD_BITS;
-                }
-                let (high, low) = (state.checked_div(frequency), state.checked_rem(frequency));
-                state = (high.unwrap_or(0) << PROBABILITY_BITS)
-                    .wrapping_add(low.unwrap_or(0))
-                    .wrapping_add(u32::from(step.start));
+        let [mut state, mut other] = [LEAST; 2];
+        for (k, step) in self.steps.iter().enumerate().rev() {
+            // The state of the symbol, and that of the one behind it.
+            if k.wrapping_add(1) != self.steps.len() {
+                core::mem::swap(&mut state, &mut other);
             }
+            let frequency = u32::from(step.frequency);
+            if state >> (u32::BITS - PROBABILITY_BITS) >= frequency {
+                words.push(state as u16);
+                state >>= WORD_BITS;
+            }
+            let (high, low) = (state.checked_div(frequency), state.checked_rem(frequency));
+            state = (high.unwrap_or(0) << PROBABILITY_BITS)
+                .wrapping_add(low.unwrap_or(0))
+                .wrapping_add(u32::from(step.start));
         }
-        let mut bytes = state.to_le_bytes().to_vec();
+        let mut bytes = [state, other].map(u32::to_le_bytes).as_flattened().to_vec();
         bytes.extend(words.iter().rev().flat_map(|word| word.to_le_bytes()));
+        bytes.resize(bytes.len().max(least.saturating_sub(self.raw.len())), 0);
+        bytes.extend(self.raw.iter().rev());
         bytes
+    }
+
+    fn push(&mut self, (start, frequency): (u32, u32)) {
+        self.steps.push(Step { start: start as u16, frequency: frequency as u16 });
     }
 }
 
 impl Coder for Writer {
     fn bit(&mut self, model: &mut Binary, value: bool) -> bool {
-        let (start, frequency) = model.range(value);
-        self.steps.push(Step { start: start as u16, frequency: frequency as u16, bits: 0 });
+        self.push(model.range(value));
         model.update(value);
         value
     }
 
     fn symbol(&mut self, model: &mut Symbols, value: usize) -> usize {
-        let (start, frequency) = model.range(value);
-        self.steps.push(Step { start: start as u16, frequency: frequency as u16, bits: 0 });
+        self.push(model.range(value));
         model.update(value);
         value
     }
 
-    fn raw(&mut self, bits: u32, value: u32) -> u32 {
-        self.steps.push(Step { start: value as u16, frequency: 0, bits: bits as u8 });
+    fn raw_long(&mut self, bits: u32, value: u64) -> u64 {
+        let value = value & low_bits(bits);
+        for k in 0..bits {
+            if self.bits % 8 == 0 {
+                self.raw.push(0);
+            }
+            if let Some(byte) = self.raw.last_mut() {
+                *byte |= ((value >> k & 1) as u8) << (self.bits % 8);
+            }
+            self.bits = self.bits.wrapping_add(1);
+        }
         value
     }
 }
 
+#[inline(always)]
+fn low_bits(bits: u32) -> u64 {
+    (1u64.unbounded_shl(bits)).wrapping_sub(1)
+}
+
+/// Bytes of the two states.
+const STATES: usize = 8;
+
 /// The reader.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Reader<'a> {
-    state: u32,
+    /// That of the next symbol, and that of the one behind it.
+    states: [u32; 2],
+    payload: &'a [u8],
+    /// What follows the states.
     words: &'a [[u8; 2]],
-    /// Bytes of the payload that are no whole word behind the others.
-    rest: &'a [u8],
-    /// Words that were wanted beyond the last.
-    missing: u32,
+    /// Words that have been read.
+    word: usize,
+    /// Raw bits that have been read.
+    bits: usize,
 }
 
 impl<'a> Reader<'a> {
-    /// Of a payload; `None` if it is too short for a state.
+    /// Of a payload; `None` if it is too short for the states.
     pub(super) fn new(payload: &'a [u8]) -> Option<Self> {
-        let (state, rest) = payload.split_first_chunk()?;
-        let (words, rest) = rest.as_chunks();
-        Some(Self { state: u32::from_le_bytes(*state), words, rest, missing: 0 })
+        let (states, rest) = payload.split_first_chunk::<STATES>()?;
+        let [a, b, c, d, e, f, g, h] = *states;
+        let states = [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])];
+        Some(Self { states, payload, words: rest.as_chunks().0, word: 0, bits: 0 })
+    }
+
+    /// The first byte that has not been read, and those up to the raw bits; the last of them holds their unused bits.
+    pub(super) fn left(&self) -> (usize, impl Iterator<Item = u8>) {
+        let start = self.word.saturating_mul(2).saturating_add(STATES);
+        let end = self.payload.len().saturating_sub(self.bits.div_ceil(8));
+        let used = self.bits % 8;
+        let partial = self.payload.get(end).filter(|_| used > 0).map(|byte| byte >> used);
+        (start, self.payload.get(start..end).unwrap_or_default().iter().copied().chain(partial))
     }
 
     /// Bytes that have not been read.
-    pub(super) fn left(&self) -> impl Iterator<Item = u8> {
-        self.words.as_flattened().iter().chain(self.rest).copied()
+    pub(super) fn count_left(&self) -> usize {
+        let front = self.word.saturating_mul(2).saturating_add(STATES);
+        self.payload.len().saturating_sub(self.bits.div_ceil(8)).saturating_sub(front)
     }
 
-    /// Whether the state is that of an end.
+    /// Whether the states are those of an end.
     pub(super) fn at_end(&self) -> bool {
-        self.missing == 0 && self.state == LEAST
-    }
-
-    #[inline(always)]
-    fn refill(&mut self) {
-        if self.state < LEAST {
-            let word = match self.words.split_first() {
-                Some((word, words)) => {
-                    self.words = words;
-                    u16::from_le_bytes(*word)
-                }
-                None => {
-                    self.missing = self.missing.saturating_add(1);
-                    0
-                }
-            };
-            self.state = self.state << WORD_BITS | u32::from(word);
-        }
+        !self.failed() && self.states == [LEAST; 2]
     }
 
     #[inline(always)]
     fn advance(&mut self, start: u32, frequency: u32) {
-        let low = self.state & (ONE - 1);
+        let [state, next] = self.states;
+        let low = state & (ONE - 1);
         // Less than 2³², since the frequency is less than 2¹⁵ and the rest of the state less than 2¹⁷.
-        self.state =
-            frequency.wrapping_mul(self.state >> PROBABILITY_BITS).wrapping_add(low.wrapping_sub(start));
-        self.refill();
+        let mut state =
+            frequency.wrapping_mul(state >> PROBABILITY_BITS).wrapping_add(low.wrapping_sub(start));
+        let word = self.words.get(self.word).map_or(0, |word| u16::from_le_bytes(*word));
+        let wanting = state < LEAST;
+        state = if wanting { state << WORD_BITS | u32::from(word) } else { state };
+        self.word = self.word.wrapping_add(usize::from(wanting));
+        self.states = [next, state];
+    }
+
+    /// Eight bytes up to that many from the end, as far as there are any.
+    #[cold]
+    fn few(&self, from: usize) -> u64 {
+        let mut all = 0;
+        for k in (0..8).rev() {
+            let at = self.payload.len().checked_sub(from.saturating_add(k).saturating_add(1));
+            let byte = at.and_then(|at| self.payload.get(at)).copied().unwrap_or(0);
+            all = all << 8 | u64::from(byte);
+        }
+        all
     }
 }
 
 impl Coder for Reader<'_> {
+    /// Words and raw bits may meet, but not overlap.
     #[inline(always)]
     fn failed(&self) -> bool {
-        self.missing > 0
+        let front = self.word.wrapping_mul(2).wrapping_add(STATES);
+        front.wrapping_add(self.bits.div_ceil(8)) > self.payload.len()
     }
 
     #[inline(always)]
     fn bit(&mut self, model: &mut Binary, _: bool) -> bool {
-        let value = model.find(self.state & (ONE - 1));
+        let [state, _] = self.states;
+        let value = model.find(state & (ONE - 1));
         let (start, frequency) = model.range(value);
         self.advance(start, frequency);
         model.update(value);
@@ -171,7 +213,8 @@ impl Coder for Reader<'_> {
 
     #[inline(always)]
     fn symbol(&mut self, model: &mut Symbols, _: usize) -> usize {
-        let value = model.find(self.state & (ONE - 1));
+        let [state, _] = self.states;
+        let value = model.find(state & (ONE - 1));
         let (start, frequency) = model.range(value);
         self.advance(start, frequency);
         model.update(value);
@@ -179,10 +222,13 @@ impl Coder for Reader<'_> {
     }
 
     #[inline(always)]
-    fn raw(&mut self, bits: u32, _: u32) -> u32 {
-        let value = self.state & (1u32.unbounded_shl(bits)).wrapping_sub(1);
-        self.state = self.state.unbounded_shr(bits);
-        self.refill();
+    fn raw_long(&mut self, bits: u32, _: u64) -> u64 {
+        let from = self.bits / 8;
+        let end = self.payload.len().wrapping_sub(from);
+        let eight = self.payload.get(..end).and_then(|before| before.last_chunk());
+        let eight = eight.map_or_else(|| self.few(from), |eight| u64::from_be_bytes(*eight));
+        let value = eight >> (self.bits % 8) & low_bits(bits);
+        self.bits = self.bits.wrapping_add(bits as usize);
         value
     }
 }

@@ -55,14 +55,13 @@ impl<'a> Saver<'a> {
         let given = self.known.wedges.as_ref().map(|(_, given)| given);
         let coded = coded.and_then(|()| self.state.attributes(&mut coder, given, extent, &mut changes));
         debug_assert_eq!(coded, Ok(()), "a mesh that was checked");
-        let mut payload = coder.finish();
-        let least = least_bytes(extent).max(changes.looked_at.div_ceil(SLOTS_A_BYTE)) as usize;
-        payload.resize(payload.len().max(least), 0);
-        payload
+        coder.finish(least_bytes(extent).max(changes.looked_at.div_ceil(SLOTS_A_BYTE)) as usize)
     }
 }
 
 impl Source for Known<'_> {
+    const KNOWS: bool = true;
+
     fn parent(&self, vertex: u32) -> u32 {
         self.mesh.collapse[(vertex - self.mesh.base_vertices) as usize]
     }

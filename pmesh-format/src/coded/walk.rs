@@ -12,8 +12,13 @@ use crate::header::PacketEntry;
 use crate::lattice::Lattice;
 use crate::storage::Positions;
 
+/// Vertices whose parents are found at a time (PMESH-COD-07): a power of two.
+const BATCH: usize = 64;
+
 /// What a writer knows; the reader's knows nothing, and nobody looks at what it says.
 pub(super) trait Source: Copy {
+    /// Whether it is a writer's.
+    const KNOWS: bool;
     fn parent(&self, vertex: u32) -> u32;
     /// Whether the slot in that place of the parent's list switches.
     fn switches(&self, vertex: u32, place: u32, count: u32) -> bool;
@@ -29,6 +34,7 @@ pub(super) trait Source: Copy {
 pub(super) struct Nothing;
 
 impl Source for Nothing {
+    const KNOWS: bool = false;
     fn parent(&self, _: u32) -> u32 {
         0
     }
@@ -100,28 +106,39 @@ impl State {
             changes.masks.reserve(splits);
             changes.introduced.reserve(extent.faces.len());
         }
-        self.slots.resize(end as usize, usize::MAX);
+        self.rings.resize(end as usize, usize::MAX);
         if extent.vertices.start < self.base {
             self.code_base(coder, source, extent, bounds, changes)?;
         }
         let (mut parent, mut times) = (0u32, 0usize);
-        for vertex in extent.vertices.start.max(self.base)..end {
-            loop {
+        let mut vertex = extent.vertices.start.max(self.base);
+        let mut parents = [0u32; BATCH];
+        while vertex < end {
+            // The parents of several vertices, then these.
+            let most = BATCH.min((end - vertex) as usize);
+            let mut found = 0;
+            while found < most && parent < vertex {
                 let model = self.parent_context(parent, times);
-                if coder.bit(&mut self.models.parents[model], source.parent(vertex) == parent) {
-                    break;
-                }
-                parent += 1;
-                times = 0;
-                if parent >= vertex {
-                    return Err((codes::PARENT, 0));
+                let splits = S::KNOWS && source.parent(vertex + found as u32) == parent;
+                if coder.bit(&mut self.models.parents[model], splits) {
+                    parents[found & (BATCH - 1)] = parent;
+                    found += 1;
+                    times = (times + 1).min(2);
+                } else {
+                    parent += 1;
+                    times = 0;
                 }
             }
-            times = (times + 1).min(2);
-            let step = Step { source, extent, bounds: &bounds, vertex, parent };
-            self.code_split(coder, step, changes)?;
-            if coder.failed() {
-                return Err(LENGTH);
+            if found == 0 {
+                return Err((codes::PARENT, 0));
+            }
+            for &parent in &parents[..found] {
+                let step = Step { source, extent, bounds: &bounds, vertex, parent };
+                self.code_split(coder, step, changes)?;
+                if coder.failed() {
+                    return Err(LENGTH);
+                }
+                vertex += 1;
             }
         }
         if self.corners.len() as u32 != extent.faces.end {
@@ -141,7 +158,7 @@ impl State {
             0 => 4 + usize::from(packets > 1),
             _ => 5 + times,
         };
-        let faces = self.slots.count(parent).clamp(3, 11) - 3;
+        let faces = self.rings.about(parent).clamp(3, 11) - 3;
         (history * 9 + faces) * 16 + usize::from(scale)
     }
 
@@ -194,11 +211,11 @@ impl State {
         Ok(())
     }
 
-    #[inline(always)]
     pub(super) fn introduce(&mut self, corners: [u32; 3], changes: &mut Changes) {
         let face = self.corners.len() as u32;
-        for (slot, corner) in (3 * face..).zip(corners) {
-            self.slots.push(corner, slot);
+        for (slot, corner) in (4 * face..).zip(corners) {
+            self.rings.loosen(corner);
+            self.rings.push(corner, slot);
         }
         self.corners.push(corners);
         if changes.recorded {

@@ -97,7 +97,7 @@ impl Wedged {
             for vertex in 0..base {
                 self.number(symbols, &plan, vertex, 1, most)?;
                 self.targets.resize(self.owners.len(), 0);
-                if symbols.missing {
+                if symbols.missing() {
                     return fault(CODED_LENGTH);
                 }
             }
@@ -113,13 +113,13 @@ impl Wedged {
                     self.materials.push(symbols.raw(16) as u16);
                 }
                 self.corners.push(corners);
-                if symbols.missing {
+                if symbols.missing() {
                     return fault(CODED_LENGTH);
                 }
             }
             for _ in 0..self.owners.len() {
                 self.first_values(symbols, &plan)?;
-                if symbols.missing {
+                if symbols.missing() {
                     return fault(CODED_LENGTH);
                 }
             }
@@ -134,7 +134,7 @@ impl Wedged {
             for wedge in self.of(v) {
                 self.values(symbols, &plan, v, wedge, cells)?;
             }
-            if symbols.missing {
+            if symbols.missing() {
                 return fault(CODED_LENGTH);
             }
         }
@@ -292,7 +292,7 @@ impl Wedged {
         }
         let place = |vertex: usize| [p, v, x].iter().position(|&q| q == vertex).unwrap_or(0);
         self.corners.push(face.map(|vertex| wedges[place(vertex)]));
-        if symbols.missing { fault(CODED_LENGTH) } else { Ok(()) }
+        if symbols.missing() { fault(CODED_LENGTH) } else { Ok(()) }
     }
 
     /// The values of a wedge of the base.

@@ -1,7 +1,8 @@
 //! Faces around a vertex in their order (PMESH-COD-08), and the run of them that switches (PMESH-COD-09).
 
-use super::symbols::Symbols;
-use super::{Models, Spoke, logarithm};
+use super::symbols::{Sixteen, Symbols};
+use super::{CORNER, Models, Spoke, fault};
+use crate::reference::Fault;
 
 /// PMESH-COD-08: the faces in their order, and whether they go round.
 pub(super) fn ordered(ascending: &[Spoke]) -> (Vec<Spoke>, bool) {
@@ -34,53 +35,40 @@ pub(super) fn ordered(ascending: &[Spoke]) -> (Vec<Spoke>, bool) {
     (order, false)
 }
 
-/// PMESH-COD-09: the first face of the run, and how many.
-pub(super) fn run(symbols: &mut Symbols<'_>, models: &mut Models, edges: &[i64]) -> (usize, usize) {
+/// PMESH-COD-09: the first face of the run, and how many; `None` if the split is not regular.
+pub(super) fn run(
+    symbols: &mut Symbols<'_>,
+    models: &mut Models,
+    edges: &[i64],
+) -> Result<Option<(usize, usize)>, Fault> {
     let m = edges.len();
-    if m == 2 {
-        return (usize::from(symbols.bit(&mut models.further[7])), 1);
+    let all: i64 = edges.iter().sum();
+    let longest = *edges.iter().max().expect("faces that go round");
+    let a = [5, 6, 8].iter().filter(|&&t| 4 * m as i64 * longest >= t * all).count();
+    let n = number(symbols, &mut models.counts[4 * (m.min(10) - 2) + a]);
+    if n == 0 {
+        return Ok(None);
     }
-    let mean = logarithm(edges.iter().sum::<i64>() / m as i64);
-    let u: Vec<usize> =
-        edges.iter().map(|&e| ((logarithm(e) - mean).div_euclid(4) + 8).clamp(0, 15) as usize).collect();
-    let (after, before) = (|k: usize| (k + 1) % m, |k: usize| (k + m - 1) % m);
+    if n >= m {
+        return fault(CORNER);
+    }
+    let between = if n == 1 { 0..2 } else { 1..n };
+    let weight = |k: usize| between.clone().map(|j| edges[(k + j) % m]).sum::<i64>();
     let mut ranked: Vec<usize> = (0..m).collect();
-    ranked.sort_by_key(|&k| (-edges[k], k));
-    if symbols.bit(&mut models.single[16 * (m.min(10) - 3) + u[ranked[0]]]) {
-        let mut faces: Vec<usize> = (0..m).collect();
-        faces.sort_by_key(|&k| (-(edges[k] + edges[after(k)]), k));
-        let mut rank = 0;
-        while rank + 1 < m && symbols.bit(&mut models.further[rank.min(6)]) {
-            rank += 1;
-        }
-        return (faces[rank], 1);
+    ranked.sort_by_key(|&k| (-weight(k), k));
+    let apart = weight(ranked[0]) - weight(ranked[1]);
+    let b = [1, 2, 4].iter().filter(|&&t| 8 * m as i64 * apart >= t * all).count();
+    let rank = number(symbols, &mut models.ranks[4 * (9 * (n.min(4) - 1) + m.min(10) - 2) + b]);
+    match ranked.get(rank) {
+        Some(&first) => Ok(Some((first, n))),
+        None => fault(CORNER),
     }
-    let mut outside = Vec::new();
-    let mut seed = ranked[m - 1];
-    for (rank, &k) in ranked[..m - 1].iter().enumerate() {
-        let model = 16 * (16 * rank.min(3) + u[k]) + u[before(k)].max(u[after(k)]);
-        if symbols.bit(&mut models.seed[model]) {
-            seed = k;
-            break;
-        }
-        outside.push(k);
+}
+
+/// A symbol, and what follows if it is the last.
+fn number(symbols: &mut Symbols<'_>, model: &mut Sixteen) -> usize {
+    match symbols.sixteen(model) {
+        15 => 15 + symbols.raw(5) as usize,
+        symbol => symbol as usize,
     }
-    let (mut low, mut high, mut n) = (seed, seed, 1);
-    let down_first = edges[before(seed)] >= edges[after(seed)];
-    for side in 0..2 {
-        let down = (side == 0) == down_first;
-        while n + 3 <= m {
-            let k = if down { before(low) } else { after(high) };
-            if outside.contains(&k) {
-                break;
-            }
-            let model = 16 * (8 * (2 * (n.min(4) - 1) + side) + (m - n).min(7)) + u[k];
-            if !symbols.bit(&mut models.extend[model]) {
-                break;
-            }
-            n += 1;
-            if down { low = k } else { high = k }
-        }
-    }
-    (before(low), n + 1)
 }

@@ -1,4 +1,4 @@
-//! The entropy coder: symbols out of a state and words (PMESH-COD-02 to -04), residuals (PMESH-COD-10).
+//! The entropy coder: symbols out of two states and words, raw bits (PMESH-COD-02 to -04), residuals (PMESH-COD-10).
 
 /// PMESH-COD-04: a choice of two.
 #[derive(Debug, Clone)]
@@ -20,35 +20,55 @@ impl Sixteen {
     }
 }
 
-/// PMESH-COD-02: the state and the words behind it.
+/// PMESH-COD-02: the states, the words behind them, and the raw bits at the end.
 pub(super) struct Symbols<'a> {
-    pub(super) x: u64,
-    pub(super) payload: &'a [u8],
+    x: u64,
+    y: u64,
+    payload: &'a [u8],
+    /// Where the next word begins.
     pub(super) at: usize,
-    pub(super) missing: bool,
+    /// Raw bits that have been read.
+    raw_bits: usize,
 }
 
-impl Symbols<'_> {
-    pub(super) fn refill(&mut self) {
-        if self.x < 1 << 16 {
-            let word = match self.payload.get(self.at..self.at + 2) {
-                Some(word) => {
-                    self.at += 2;
-                    u64::from(word[0]) + 256 * u64::from(word[1])
-                }
-                None => {
-                    self.missing = true;
-                    0
-                }
-            };
-            self.x = (self.x << 16) + word;
-        }
+impl<'a> Symbols<'a> {
+    /// `None` if the payload is too short for the states.
+    pub(super) fn new(payload: &'a [u8]) -> Option<Self> {
+        let state = |at: usize| payload.get(at..at + 4)?.try_into().ok().map(u32::from_le_bytes);
+        let (x, y) = (state(0)?, state(4)?);
+        Some(Self { x: x.into(), y: y.into(), payload, at: 8, raw_bits: 0 })
     }
 
-    pub(super) fn range(&mut self, c: i64, f: i64) {
+    /// Where the raw bits begin that have been read.
+    pub(super) fn raw_at(&self) -> isize {
+        self.payload.len() as isize - self.raw_bits.div_ceil(8) as isize
+    }
+
+    /// PMESH-COD-03: whether more has been read than there is.
+    pub(super) fn missing(&self) -> bool {
+        self.at as isize > self.raw_at()
+    }
+
+    /// PMESH-COD-03: whether nothing is left to be read.
+    pub(super) fn at_end(&self) -> bool {
+        !self.missing() && self.x == 1 << 16 && self.y == 1 << 16
+    }
+
+    /// The bits that are left of the last byte of raw bits.
+    pub(super) fn rest(&self) -> u8 {
+        let used = self.raw_bits % 8;
+        if used == 0 { 0 } else { self.payload[self.raw_at() as usize] >> used }
+    }
+
+    fn range(&mut self, c: i64, f: i64) {
         let low = self.x % (1 << 15);
         self.x = f as u64 * (self.x >> 15) + low - c as u64;
-        self.refill();
+        if self.x < 1 << 16 {
+            let word = self.payload.get(self.at..self.at + 2).unwrap_or(&[0, 0]);
+            self.x = (self.x << 16) + u64::from(word[0]) + 256 * u64::from(word[1]);
+            self.at += 2;
+        }
+        std::mem::swap(&mut self.x, &mut self.y);
     }
 
     pub(super) fn bit(&mut self, model: &mut Binary) -> bool {
@@ -85,14 +105,13 @@ impl Symbols<'_> {
     }
 
     pub(super) fn raw(&mut self, bits: u32) -> i64 {
-        if bits > 16 {
-            let low = self.raw(16);
-            return low + (self.raw(bits - 16) << 16);
+        let mut number = 0;
+        for k in 0..bits {
+            let byte = self.payload.len().checked_sub(self.raw_bits / 8 + 1).map_or(0, |at| self.payload[at]);
+            number |= i64::from(byte >> (self.raw_bits % 8) & 1) << k;
+            self.raw_bits += 1;
         }
-        let value = self.x % (1 << bits);
-        self.x >>= bits;
-        self.refill();
-        value as i64
+        number
     }
 }
 
