@@ -16,6 +16,9 @@
 //! Both renderers carry out the same [`plan`]; `cpu/` has one file for each shader, with the same functions in the same
 //! order of arguments. Their pictures agree within what `tests/gpu.rs` states and derives.
 //!
+//! `GpuMesh` keeps a progressive mesh on the GPU while its level changes; `GpuRenderer::render_with` draws it beside a
+//! scene, and a step from one level to another uploads what it changes.
+//!
 //! # Features
 //!
 //! - `gpu` (default): the wgpu renderer.
