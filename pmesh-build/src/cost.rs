@@ -4,9 +4,10 @@ use glam::DVec3;
 
 use crate::attributes::Deviations;
 use crate::distance::squared_distance;
+use crate::hausdorff::Hausdorff;
 use crate::options::Cost;
 use crate::quadric::Quadric;
-use crate::rules::twice_area;
+use crate::rules::{HUB_FACES, twice_area};
 use crate::surface::{Ring, Surface};
 
 /// Weight of the constraint planes along borders, per squared edge length, against face planes per area.
@@ -19,6 +20,8 @@ const SEAM_WEIGHT: f64 = 1.0;
 const LENGTH_WEIGHT: f64 = 1e-7;
 /// Mean of the squared heights of a cone over its area, per squared height of its tip.
 const CONE: f64 = 1.0 / 6.0;
+/// Hausdorff distances count from one vertex in this many on. Before, collapses are many and move little.
+const HAUSDORFF_SHARE: usize = 8;
 
 /// The costs of all collapses, kept up to date while vertices go.
 #[derive(Debug)]
@@ -30,6 +33,7 @@ pub(crate) struct Costs<'a> {
     /// Each vertex's quadric at its own position, with the deviation of its attributes.
     own: Vec<f64>,
     deviations: Option<Deviations<'a>>,
+    hausdorff: Option<Hausdorff>,
 }
 
 impl<'a> Costs<'a> {
@@ -72,7 +76,9 @@ impl<'a> Costs<'a> {
                 }
             }
         }
-        let mut costs = Self { kind, total_area, own: vec![0.0; quadrics.len()], quadrics, deviations };
+        let hausdorff = (kind == Cost::Quadric && total_area > 0.0).then(|| Hausdorff::new(surface));
+        let own = vec![0.0; quadrics.len()];
+        let mut costs = Self { kind, total_area, own, quadrics, deviations, hausdorff };
         for v in 0..crate::input::index(surface.positions.len()) {
             costs.own[v as usize] = costs.standing(surface, v);
         }
@@ -81,50 +87,75 @@ impl<'a> Costs<'a> {
 
     /// What moving `u` onto its neighbour `v` costs.
     ///
-    /// For quadrics: by how much the squared distances to the planes that both stand for grow, divided by the fourth root of
-    /// the area that moves. The sum alone (exponent 0) keeps the mean distance small but gives up thin features, which have
-    /// hardly any area; the mean over the area (exponent 1) keeps the greatest distance small at the mean's cost. Measured
-    /// on six scans and models at four levels each, 1/4 is the least exponent at which no level fell behind on the mean.
+    /// For quadrics: by how much the squared distances to the planes that both stand for grow, summed over the area. That
+    /// keeps the mean distance small; [`Costs::squared_distance`] sees to what has hardly any area.
     pub(crate) fn of(&self, surface: &Surface, u: u32, v: u32) -> f64 {
         let (from, to) = (surface.positions[u as usize], surface.positions[v as usize]);
         match self.kind {
             Cost::Quadric => {
-                let moving = &self.quadrics[u as usize];
-                let area = moving.area();
-                let length = LENGTH_WEIGHT * area * from.distance_squared(to);
-                let growth = (self.sum(surface, u, v) - self.own[u as usize]).max(0.0) + length;
-                if area > 0.0 { self.by_area(growth, area) } else { growth }
+                let length = LENGTH_WEIGHT * self.quadrics[u as usize].area() * from.distance_squared(to);
+                (self.sum(surface, u, v) - self.own[u as usize]).max(0.0) + length
             }
             Cost::Melax => from.distance(to) * curvature(surface, u, v),
         }
     }
 
-    /// What moving `u` onto its neighbour `v` costs at least when `left` vertices are left.
-    ///
-    /// Quadrics do not see a thin spike go: its sides keep their planes, and its tip has hardly any area. So, where `u`
-    /// stands for less area than vertices do on average, its height above the faces that take its place counts as if
-    /// those were of average area: as a cone of that height, the mean of whose squared heights is a sixth of its own.
-    pub(crate) fn at_least(&self, surface: &Surface, u: u32, v: u32, left: usize) -> f64 {
+    /// The area that vertices stand for on average when `left` of them are left \[m²\]: what a squared metre of distance
+    /// from the whole surface costs.
+    pub(crate) fn average_area(&self, left: usize) -> f64 {
         // Every face counts at each of its three vertices.
-        let average = 3.0 * self.total_area / left as f64;
-        if self.kind != Cost::Quadric || self.quadrics[u as usize].area() >= average {
-            return 0.0;
-        }
-        let (from, to) = (surface.positions[u as usize], surface.positions[v as usize]);
-        let moved =
-            surface.around(u).iter().map(|&f| surface.faces[f as usize]).filter(|face| !face.contains(&v));
-        let height = moved.fold(from.distance_squared(to), |least, face| {
-            // Its minimum with NaN, for a face without an area, is the other one.
-            let corner = |x: u32| if x == u { to } else { surface.positions[x as usize] };
-            least.min(squared_distance(from, face.map(corner)))
-        });
-        self.by_area(CONE * height * average, average)
+        3.0 * self.total_area / left as f64
     }
 
-    /// A sum over an area \[m²\], as costs weigh it: divided by the fourth root of the area's share of the whole, so that
-    /// costs order the same way at any scale.
-    fn by_area(&self, sum: f64, area: f64) -> f64 {
-        sum / (area / self.total_area).sqrt().sqrt()
+    /// Whether Hausdorff distances count when `left` vertices are left.
+    pub(crate) fn measures(&self, left: usize) -> bool {
+        self.hausdorff.is_some() && left * HAUSDORFF_SHARE <= self.quadrics.len()
+    }
+
+    /// The squared distance that moving `u`, whose edges are in `ring`, onto its neighbour `v` costs at least \[m²\]: times
+    /// [`Costs::average_area`], whatever the quadrics say.
+    ///
+    /// Quadrics know means over areas, not what sticks out of them, and planes, not where on them the surface ends. So the
+    /// greatest distance between the whole surface and what is left of it here counts as if an average vertex were all
+    /// that far off. Measured on six scans and models at four levels each, that keeps the greatest distance of all levels
+    /// below that of quadrics alone, and the mean of the coarse ones too.
+    ///
+    /// While few vertices have gone it is not looked at, but thin spikes go even then: their sides keep their planes, and
+    /// the tip has hardly any area. Where `u` stands for less area than vertices do on average, its height above the faces
+    /// that take its place counts as that of a cone, the mean of whose squared heights is a sixth of its own.
+    ///
+    /// Exact only between `enough` and `limit`: below, anything as low may come back, above, anything as high.
+    pub(crate) fn squared_distance(
+        &mut self,
+        surface: &Surface,
+        ring: &Ring,
+        (u, v): (u32, u32),
+        left: usize,
+        (enough, limit): (f64, f64),
+    ) -> f64 {
+        if self.hausdorff.is_none() {
+            return 0.0;
+        }
+        let mut least = 0.0;
+        if self.quadrics[u as usize].area() < self.average_area(left) {
+            let (from, to) = (surface.positions[u as usize], surface.positions[v as usize]);
+            let moved = surface
+                .around(u)
+                .iter()
+                .map(|&f| surface.faces[f as usize])
+                .filter(|face| !face.contains(&v));
+            let height = moved.fold(from.distance_squared(to), |least, face| {
+                let corner = |x: u32| if x == u { to } else { surface.positions[x as usize] };
+                least.min(squared_distance(from, face.map(corner)))
+            });
+            least = CONE * height;
+        }
+        let hub = surface.around(u).len().max(surface.around(v).len()) > HUB_FACES;
+        let measures = self.measures(left);
+        let Some(hausdorff) = self.hausdorff.as_mut().filter(|_| measures && !hub && least <= limit) else {
+            return least;
+        };
+        hausdorff.squared_distance(surface, ring, (u, v), (least.max(enough), limit))
     }
 
     /// How far the surface moves, estimated \[m\]: for quadrics the root of the mean over the area of
@@ -156,6 +187,9 @@ impl<'a> Costs<'a> {
     pub(crate) fn collapsed(&mut self, surface: &Surface, u: u32, v: u32, targets: &[u32]) {
         let moved = self.quadrics[u as usize];
         self.quadrics[v as usize].add(&moved);
+        if let Some(hausdorff) = &mut self.hausdorff {
+            hausdorff.collapsed(u, v);
+        }
         if let Some(deviations) = &mut self.deviations {
             deviations.collapsed(u, targets);
         }

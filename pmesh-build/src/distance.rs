@@ -2,10 +2,26 @@
 
 use glam::DVec3;
 
-/// Squared distance from `p` to the triangle `a`, `b`, `c` \[m²\]; NaN if the triangle has no area.
-///
-/// By the region of the triangle's plane in which the nearest point lies (Ericson, Real-Time Collision Detection, 5.1.5).
-pub(crate) fn squared_distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+/// Squared distance from `p` to the triangle `a`, `b`, `c`, which may have no area \[m²\].
+pub(crate) fn squared_distance(p: DVec3, triangle @ [a, b, c]: [DVec3; 3]) -> f64 {
+    let squared = squared_distance_by_region(p, triangle);
+    if squared.is_nan() {
+        // No area, so no plane: what there is are its edges.
+        return to_segment(p, a, b).min(to_segment(p, b, c)).min(to_segment(p, c, a));
+    }
+    squared
+}
+
+fn to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let along = b - a;
+    // Its minimum with NaN, where both ends are one, is the other one.
+    let share = (along.dot(p - a) / along.length_squared()).min(1.0).max(0.0);
+    p.distance_squared(a + along * share)
+}
+
+/// By the region of the triangle's plane in which the nearest point lies (Ericson, Real-Time Collision Detection, 5.1.5); NaN
+/// if the triangle has no area.
+fn squared_distance_by_region(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let (ab, ac) = (b - a, c - a);
     let (from_a, from_b, from_c) = (p - a, p - b, p - c);
     let (ab_a, ac_a) = (ab.dot(from_a), ac.dot(from_a));

@@ -29,11 +29,13 @@
 #![forbid(unsafe_code)]
 
 mod attributes;
+mod bvh;
 mod cost;
 mod distance;
 mod error;
 #[cfg(feature = "fuzz")]
 mod fuzz;
+mod hausdorff;
 mod input;
 mod options;
 mod order;

@@ -5,7 +5,8 @@
 #[non_exhaustive]
 pub enum Cost {
     /// Area-weighted quadrics (Garland and Heckbert 1997) of the planes around both end points, evaluated at the
-    /// vertex that stays, with constraint planes along borders and seams.
+    /// vertex that stays, with constraint planes along borders and seams; and at least the square of the distance between
+    /// the whole surface and what is left of it there, times the area that a vertex stands for on average.
     #[default]
     Quadric,
     /// Edge length times the greatest turn of a normal (Melax, "A Simple, Fast, and Effective Polygon Reduction

@@ -22,8 +22,8 @@ const TOPOLOGY_SHARE: usize = 300;
 /// When nothing is allowed any more the rules are relaxed, unless going over all vertices once more (what is around them
 /// has changed) had freed at least one collapse for this many vertices.
 const RETRY_SHARE: usize = 16;
-/// What a collapse costs at least rises with the average area of vertices. A candidate waits once more only if that is
-/// more than this times what it was queued with.
+/// What a collapse costs at least rises with the average area of vertices. A candidate is queued once more only if that
+/// is more than this times what it was queued with.
 const RISE: f64 = 1.1;
 
 /// One vertex that is gone.
@@ -69,6 +69,7 @@ pub(crate) fn find(
         ring,
         queue: Queue::new(vertices),
         stale: vec![false; vertices],
+        measured: vec![f64::NAN; vertices],
         gone: vec![false; vertices],
         left: vertices,
         total: vertices,
@@ -100,6 +101,8 @@ struct Run<'a> {
     /// Whether something beside a vertex has collapsed since its candidate was queued. What it costs has hardly ever
     /// fallen since then, so it is looked at again only when it comes up.
     stale: Vec<bool>,
+    /// The squared distance that the candidate of each vertex costs at least \[m²\]; NaN while that is not known.
+    measured: Vec<f64>,
     gone: Vec<bool>,
     left: usize,
     total: usize,
@@ -149,7 +152,7 @@ impl Run<'_> {
                 continue;
             }
             self.ring.collect(&self.surface, u);
-            if !self.allowed(u, v) || self.at_least(u, v) > RISE * cost {
+            if !self.allowed(u, v) || self.has_risen(u, v, cost) {
                 self.look_closely(u);
                 continue;
             }
@@ -193,6 +196,7 @@ impl Run<'_> {
     /// neighbours of `u` in `neighbours`.
     fn look(&mut self, u: u32) {
         self.stale[u as usize] = false;
+        self.measured[u as usize] = f64::NAN;
         self.surface.neighbours(u, &mut self.neighbours);
         let mut best: Option<Candidate> = None;
         for &v in &self.neighbours {
@@ -213,27 +217,45 @@ impl Run<'_> {
         options.clear();
         options.extend(self.ring.edges.iter().map(|e| (self.costs.of(&self.surface, u, e.to), e.to)));
         options.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let unit = self.costs.average_area(self.left);
         let mut best: Option<Candidate> = None;
         for &(cost, v) in &options {
-            if best.is_some_and(|b| b.cost <= cost) {
+            let most = best.map_or(f64::INFINITY, |b| b.cost);
+            if most <= cost {
                 break;
             }
             if self.allowed(u, v) {
-                let cost = cost.max(self.at_least(u, v));
-                if best.is_none_or(|b| cost < b.cost) {
+                let squared = self.squared_distance(u, v, cost / unit, most / unit);
+                let cost = cost.max(squared * unit);
+                if cost < most {
                     best = Some(Candidate { cost, u, v });
+                    self.measured[u as usize] = squared;
                 }
             }
         }
         if let Some(candidate) = best {
             self.queue.set(candidate);
         }
+        if !self.costs.measures(self.left) {
+            self.measured[u as usize] = f64::NAN;
+        }
         self.options = options;
     }
 
-    /// What moving `u` onto `v` costs at least; where topology gives way, thin features may too.
-    fn at_least(&self, u: u32, v: u32) -> f64 {
-        if self.rules > Rules::Strict { 0.0 } else { self.costs.at_least(&self.surface, u, v, self.left) }
+    /// Whether moving `u` onto `v`, its candidate, costs more than it was queued with.
+    fn has_risen(&mut self, u: u32, v: u32, cost: f64) -> bool {
+        let limit = RISE * cost / self.costs.average_area(self.left);
+        let known = self.measured[u as usize];
+        let squared = if known.is_nan() { self.squared_distance(u, v, limit, limit) } else { known };
+        squared > limit
+    }
+
+    /// See [`Costs::squared_distance`]. Where nothing else is allowed any more, everything may go.
+    fn squared_distance(&mut self, u: u32, v: u32, enough: f64, limit: f64) -> f64 {
+        if self.rules > Rules::Topology {
+            return 0.0;
+        }
+        self.costs.squared_distance(&self.surface, &self.ring, (u, v), self.left, (enough, limit))
     }
 
     /// Moves `u` onto `v`, removes vertices that lose their last face, and looks at what is around again.

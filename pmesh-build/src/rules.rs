@@ -22,8 +22,9 @@ const LEAST_TURN_COSINE: f64 = 0.25;
 /// and the worst face around a vertex may not become worse still. As a rule for each face alone it would lock scans: the
 /// Stanford dragon stops at 16,000 vertices with 0.02 so, at 453 with this.
 const SLIVER: f64 = 0.005;
-/// Above this many faces around a vertex its ring is not collected for every neighbour that wants to collapse onto it.
-const HUB_FACES: usize = 64;
+/// Above this many faces around a vertex its ring is not collected for every neighbour that wants to collapse onto it, and
+/// no distances to all of them are looked at.
+pub(crate) const HUB_FACES: usize = 64;
 
 /// Whether moving `u` onto its neighbour `v` is allowed. `ring` holds the edges of `u`, `other` is scratch space.
 /// `coincident`: whether faces on the same three vertices may arise.

@@ -26,3 +26,20 @@ fn every_region_of_a_triangle() {
         }
     }
 }
+
+/// Triangles without an area are their edges.
+#[test]
+fn triangles_that_are_edges_and_points() {
+    let (a, b, c) = (DVec3::ZERO, DVec3::new(2.0, 0.0, 0.0), DVec3::new(4.0, 0.0, 0.0));
+    let above = DVec3::new(3.0, 1.0, 0.0);
+    for (triangle, expected) in [
+        ([a, b, c], 1.0),
+        ([c, a, b], 1.0),
+        ([a, b, b], 2.0),
+        ([b, a, a], 2.0),
+        ([a, b, a], 2.0),
+        ([a; 3], 10.0),
+    ] {
+        assert_eq!(squared_distance(above, triangle), expected, "{triangle:?}");
+    }
+}

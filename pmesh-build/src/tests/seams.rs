@@ -95,9 +95,10 @@ fn a_curved_border_between_materials_keeps_its_shape() {
     };
     let (progressive, _) = built(&mesh, &BuildOptions::default());
     let full = area(&progressive.full());
-    // A polygon of 12 corners in a circle lacks 5 % of its area; four more vertices are those of the square.
+    // Four vertices are those of the square. A polygon of 11 corners in a circle lacks 5.4 % of its area; corners within
+    // half the diagonal of a cell of 1/40 off the circle of 0.3, on average half of that, make up to 6 % more.
     let coarse = area(&progressive.level(16));
-    assert!((coarse - full).abs() < 0.08 * full, "{coarse} of {full}");
+    assert!((coarse - full).abs() < 0.114 * full, "{coarse} of {full}");
 }
 
 #[test]
