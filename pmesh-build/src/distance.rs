@@ -14,8 +14,8 @@ pub(crate) fn squared_distance(p: DVec3, triangle @ [a, b, c]: [DVec3; 3]) -> f6
 
 fn to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     let along = b - a;
-    // Its minimum with NaN, where both ends are one, is the other one.
-    let share = (along.dot(p - a) / along.length_squared()).min(1.0).max(0.0);
+    let squared = along.length_squared();
+    let share = if squared > 0.0 { (along.dot(p - a) / squared).clamp(0.0, 1.0) } else { 0.0 };
     p.distance_squared(a + along * share)
 }
 
