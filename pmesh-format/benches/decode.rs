@@ -2,8 +2,8 @@
 //! same minute, and what a replay holds beside the mesh.
 //!
 //! `cargo bench -p pmesh-format --bench decode [-- FILE.pmesh…]`; without files, a grid. Every figure is the median of rounds in
-//! which everything is timed once, in processor time where the system tells it. What a file holds is also written again, in
-//! packets that bring 30 % more vertices each: raw, raw with the vertices in the order of coded packets, coded.
+//! which everything is timed, in processor time where the system tells it. What a file holds is written again: raw in packets
+//! that bring 30 % more vertices each, raw in one packet, coded in packets as the first.
 
 use std::alloc::System;
 use std::hint::black_box;
@@ -20,6 +20,9 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Times everything is done.
 const ROUNDS: usize = 11;
+
+/// Faces that are decoded before the time is looked at again, at least.
+const LEAST_FACES: u32 = 2_000_000;
 
 /// The level at which zstd compresses the plain arrays.
 const ZSTD_LEVEL: i32 = 3;
@@ -40,23 +43,25 @@ fn main() {
             .map(|(name, file)| (name.clone(), load(file).progressive_mesh().expect("a whole file")))
             .collect(),
     };
+    subjects.clear();
     for (name, mesh) in meshes {
         for positions in [Positions::F32, Positions::Quantised(14)] {
-            let packets = PacketSize::Growing { first: 256, percent: 30, most: u32::MAX };
-            let coded = EncodeOptions { packets, mode: Mode::Coded, positions, ..EncodeOptions::new() };
-            let raw = EncodeOptions { mode: Mode::Raw, ..coded };
-            let arranged = coded.arranged(&mesh);
-            for (how, mesh, options) in
-                [("raw", &mesh, raw), ("raw sorted", &arranged, raw), ("coded", &mesh, coded)]
-            {
-                let file = encode(mesh, &options).expect("a mesh that can be written");
+            let growing = PacketSize::Growing { first: 256, percent: 30, most: u32::MAX };
+            let ways = [
+                ("raw", Mode::Raw, growing),
+                ("raw, one packet", Mode::Raw, PacketSize::Fixed(u32::MAX)),
+                ("coded", Mode::Coded, growing),
+            ];
+            for (how, mode, packets) in ways {
+                let options = EncodeOptions { packets, mode, positions, ..EncodeOptions::new() };
+                let file = encode(&mesh, &options).expect("a mesh that can be written");
                 subjects.push((format!("{name} {how} {}", positions.name()), file));
             }
         }
     }
     println!("{ROUNDS} rounds, medians\n");
     println!(
-        "{:28} {:>9} {:>9} {:>8} {:>9} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8}",
+        "{:32} {:>9} {:>9} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>10} {:>9} {:>8} {:>8}",
         "file",
         "vertices",
         "faces",
@@ -65,9 +70,11 @@ fn main() {
         "Mtris/s",
         "/memcpy",
         "x zstd",
-        "down Mt/s",
-        "up Mt/s",
-        "memory"
+        "streamed",
+        "first step",
+        "down + up",
+        "memory",
+        "stepped"
     );
     for (name, file) in &subjects {
         measure(name, file);
@@ -75,8 +82,9 @@ fn main() {
     println!(
         "\nMtris/s: triangles of the finest level by the time from the bytes of the file to its index buffer, checksums (own\n\
          column, ns a triangle) and every check included; / memcpy: that time over copying positions and indices; x zstd: the\n\
-         time of decompressing them (level {ZSTD_LEVEL}) over it; down, up: from the finest to the coarsest level and back,\n\
-         triangles by time; memory: what a replay holds beside the mesh, over the bytes of the mesh."
+         time of decompressing them (level {ZSTD_LEVEL}) over it; streamed: Mtris/s packet by packet, with what each changes;\n\
+         first step: what it takes to prepare steps, ns a triangle; down + up: from the finest to the coarsest level and back, ns\n\
+         a triangle; memory, stepped: what a replay holds beside the mesh, over the bytes of the mesh, before and after that."
     );
 }
 
@@ -94,35 +102,52 @@ fn measure(name: &str, file: &[u8]) {
     let mut decompressor = zstd::bulk::Decompressor::new().expect("a decompressor");
     let mut copy = vec![0u8; plain.len()];
     let levels = replay.levels().expect("a mesh");
-    let mut rounds = [const { vec![] }; 6];
+    let fresh = replay.clone();
+    // So often that the clock of the processor, which may tick every few milliseconds, sees it.
+    let times = LEAST_FACES.div_ceil(header.face_count.max(1)) as usize;
+    let mut rounds = [const { vec![] }; 7];
     for _ in 0..ROUNDS {
+        let often = |run: &mut dyn FnMut()| time(|| (0..times).for_each(|_| run())) / times as f64;
+        let mut unstepped = vec![fresh.clone(); times];
+        let mut next = 0;
         let timed = [
-            time(|| {
+            often(&mut || {
                 decode_all(file, &Limits::default(), |event| {
                     black_box(event);
                 })
                 .expect("a valid file");
             }),
-            time(|| drop(black_box(load(file)))),
-            time(|| black_box(&mut copy).copy_from_slice(black_box(&plain))),
-            time(|| {
+            often(&mut || drop(black_box(load(file)))),
+            often(&mut || black_box(&mut copy).copy_from_slice(black_box(&plain))),
+            often(&mut || {
                 let length = decompressor.decompress_to_buffer(&compressed, &mut copy);
                 assert_eq!(length.ok(), Some(plain.len()));
             }),
-            time(|| drop(black_box(replay.set_level(*levels.start())))),
-            time(|| drop(black_box(replay.set_level(*levels.end())))),
+            often(&mut || drop(black_box(streamed(file)))),
+            often(&mut || {
+                black_box(unstepped[next].set_level(levels.end() - 1)).expect("a level");
+                next += 1;
+            }),
+            often(&mut || {
+                black_box(replay.set_level(*levels.start())).expect("the coarsest level");
+                black_box(replay.set_level(*levels.end())).expect("the finest level");
+            }),
         ];
         rounds.iter_mut().zip(timed).for_each(|(all, one)| all.push(one));
     }
     let faces = f64::from(header.face_count);
     let of = |k: usize| median(rounds[k].clone());
     let region = Region::new(ALLOCATOR);
-    let held = load(file);
-    let stats = region.change();
-    let bytes = stats.bytes_allocated as isize - stats.bytes_deallocated as isize;
-    let mesh = plain.len() + attribute_bytes(&held);
+    let mut held = load(file);
+    let mut beside = || {
+        let stats = region.change();
+        let bytes = stats.bytes_allocated as isize - stats.bytes_deallocated as isize;
+        let mesh = plain.len() + attribute_bytes(&held);
+        held.set_level(levels.end() - 1).expect("a level");
+        (bytes as f64 - mesh as f64) / mesh as f64
+    };
     println!(
-        "{name:28} {:>9} {:>9} {:>8.1} {:>9.2} {:>8.1} {:>8.1} {:>8.2} {:>9.1} {:>9.1} {:>8.2}",
+        "{name:32} {:>9} {:>9} {:>8.1} {:>9.2} {:>8.1} {:>8.1} {:>8.2} {:>8.1} {:>10.1} {:>9.2} {:>8.2} {:>8.2}",
         header.vertex_count,
         header.face_count,
         file.len() as f64 * 8.0 / f64::from(header.vertex_count),
@@ -131,12 +156,19 @@ fn measure(name: &str, file: &[u8]) {
         of(1) / of(2),
         of(3) / of(1),
         faces / of(4) * 1e3,
-        faces / of(5) * 1e3,
-        (bytes as f64 - mesh as f64) / mesh as f64,
+        of(5) / faces,
+        of(6) / faces,
+        beside(),
+        beside(),
     );
 }
 
 fn load(file: &[u8]) -> Replay {
+    Replay::from_file(file, &Limits::default()).expect("a valid file")
+}
+
+/// The same packet by packet, as from a network.
+fn streamed(file: &[u8]) -> Replay {
     let mut replay = Replay::default();
     decode_all(file, &Limits::default(), |event: Event<'_>| replay.accept(&event).map(drop))
         .expect("a valid file");

@@ -35,6 +35,17 @@ fn strip(vertices: u32, seams: bool) -> ProgressiveMesh {
     }
 }
 
+/// All vertices collapse onto the one three before, and all faces lie on the last three: every corner passes every third vertex,
+/// as deep as packets may be.
+fn deep(vertices: u32) -> ProgressiveMesh {
+    ProgressiveMesh {
+        collapse: (3..vertices).map(|v| v - 3).collect(),
+        wedge_collapse: (3..vertices).map(|v| v - 3).collect(),
+        faces: vec![[vertices - 3, vertices - 2, vertices - 1]; 4 * vertices as usize],
+        ..strip(vertices, false)
+    }
+}
+
 /// A header of 152 bytes that declares the most that the format holds, then a few bytes of a directory.
 fn greedy() -> Vec<u8> {
     let format =
@@ -80,28 +91,66 @@ fn memory_is_bounded_by_what_has_arrived() {
     let error = check(&file, &Limits::default()).expect_err("more than the default limit");
     assert_eq!(error.verdict(), Verdict::Limit, "{error}");
 
-    // What is held at any time, packet by packet.
-    for (seams, packet) in [(false, 5000), (false, 100), (false, 1), (true, 5000), (true, 1)] {
-        let file = encode(&strip(20_000, seams), &EncodeOptions::fixed(packet)).unwrap();
+    // What is held at any time, packet by packet; nobody has stepped, or somebody steps after each packet.
+    let meshes = [
+        (strip(20_000, false), 5000),
+        (strip(20_000, false), 100),
+        (strip(20_000, false), 1),
+        (strip(20_000, true), 5000),
+        (strip(20_000, true), 1),
+        (deep(1_500), 1_500),
+        (deep(1_500), 8),
+    ];
+    for (mesh, packet) in meshes {
+        let file = encode(&mesh, &EncodeOptions::fixed(packet)).unwrap();
+        for stepping in [false, true] {
+            let region = Region::new(ALLOCATOR);
+            let mut decoder = Decoder::new(Limits::default());
+            let mut replay = Replay::default();
+            let mut at = 0;
+            let check = |at: usize| {
+                let bound = FIXED + BYTES_PER_BYTE * at;
+                let held = held(&region);
+                assert!(
+                    held <= bound,
+                    "{held} bytes held after {at}, packets of {packet}, stepping: {stepping}"
+                );
+                held
+            };
+            while let Step::Consumed(used, event) = decoder.push(&file[at..]).unwrap() {
+                at += used;
+                replay.accept(&event).unwrap();
+                check(at);
+                if let (true, Some(levels)) = (stepping, replay.levels()) {
+                    replay.set_level(*levels.start()).unwrap();
+                    check(at);
+                }
+            }
+            assert_eq!(at, file.len());
+            let before = check(at);
+            // The first step adds to it, if there was none; walking about does not.
+            replay.set_level(777).unwrap();
+            let after = check(at);
+            assert!(stepping || after > before, "{after} bytes after the first step, {before} before");
+            for level in [3, mesh.positions.len() as u32, 777, 999, 3, 1000] {
+                replay.set_level(level).unwrap();
+                assert!(
+                    check(at) <= after + after / 8,
+                    "{} bytes after walking about, {after} before",
+                    check(at)
+                );
+            }
+        }
+        // A whole file at once takes no more.
         let region = Region::new(ALLOCATOR);
-        let mut decoder = Decoder::new(Limits::default());
-        let mut replay = Replay::default();
-        let mut at = 0;
-        while let Step::Consumed(used, event) = decoder.push(&file[at..]).unwrap() {
-            at += used;
-            replay.accept(&event).unwrap();
-            let bound = FIXED + BYTES_PER_BYTE * at;
-            assert!(
-                held(&region) <= bound,
-                "{} bytes held after {at}, seams {seams}, packets {packet}",
-                held(&region)
-            );
-        }
-        assert_eq!(at, file.len());
-        // Nor does walking about add to it.
-        for level in [3, 20_000, 777, 19_999, 3, 10_000] {
-            replay.set_level(level).unwrap();
-        }
-        assert!(held(&region) <= FIXED + BYTES_PER_BYTE * at, "{} bytes held", held(&region));
+        let replay = Replay::from_file(&file, &Limits::default()).unwrap();
+        assert!(held(&region) <= FIXED + BYTES_PER_BYTE * file.len(), "{} bytes held", held(&region));
+        drop(replay);
+        // Nor does one of which only the beginning is there make room for more than that.
+        let beginning = &file[..file.len() / 4];
+        let region = Region::new(ALLOCATOR);
+        assert!(Replay::from_file(beginning, &Limits::default()).is_err());
+        let allocated = region.change().bytes_allocated;
+        assert!(allocated <= FIXED + 2 * BYTES_PER_BYTE * beginning.len(), "{allocated} bytes allocated");
     }
 }

@@ -11,7 +11,7 @@ use crate::packet::switch_count;
 
 /// Slots that are read, looked up and written together, each in a loop of its own, so that many of these accesses to memory are
 /// under way at once.
-const BLOCK: usize = 256;
+const BLOCK: usize = 1024;
 
 /// Wedges that corners may pass for each byte of a payload (PMESH-SWI-07).
 pub(crate) const DEPTHS_A_BYTE: u64 = 8;
@@ -60,7 +60,7 @@ impl Replay {
         let mut reader = Reader::new(shape, slots);
         self.switched.reserve_exact(shape.count as usize);
         let (mut block, mut had, mut found) = ([0u32; BLOCK], [0u32; BLOCK], [0u32; BLOCK]);
-        let mut several = [0u8; BLOCK];
+        let mut several = [0u16; BLOCK];
         let mut at = 0u64;
         let mut next = 0u32;
         while reader.left() > 0 {
@@ -86,7 +86,7 @@ impl Replay {
             for (k, (&slot, &found)) in block.iter().zip(&*found).enumerate() {
                 corners[slot as usize] = found;
                 good &= found >= first;
-                several[groups & (BLOCK - 1)] = k as u8;
+                several[groups & (BLOCK - 1)] = k as u16;
                 groups += usize::from(Descent::is_group(found));
             }
             for &k in &several[..groups] {
