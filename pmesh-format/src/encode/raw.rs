@@ -21,6 +21,8 @@ pub(super) struct RawWriter<'a> {
     corners: Vec<[u32; 3]>,
     /// What descends from what in the packet at hand.
     descent: Descent,
+    /// How many vertices that collapse to try in the next packet at most: twice as many as fitted after one was cut.
+    most: u32,
 }
 
 /// What a packet says of corners.
@@ -39,12 +41,16 @@ impl<'a> RawWriter<'a> {
         let wedges = writer.first_split_wedge()..writer.mesh.wedges.len() as u32;
         let mut lists = Vec::new();
         Lists::build(wedges, writer, MOST, &mut lists);
-        Self { writer, lists, corners, descent: Descent::default() }
+        Self { writer, lists, corners, descent: Descent::default(), most: u32::MAX }
     }
 
     /// The payload of the next packet. One whose corners pass too many wedges (PMESH-SWI-07) is cut in half until they do not.
     pub(super) fn packet(&mut self, entry: &mut PacketEntry) -> Vec<u8> {
+        let first = entry.vertices.start.max(self.writer.base());
+        let least = entry.vertices.start + 1;
         loop {
+            let end = entry.vertices.end.min(first.saturating_add(self.most)).max(least);
+            self.writer.end_at(entry, end);
             let switched = self.switch(entry);
             let payload = self.payload(entry, &switched);
             let fits = switched.depths <= DEPTHS_A_BYTE * payload.len() as u64;
@@ -53,11 +59,10 @@ impl<'a> RawWriter<'a> {
             }
             self.descent.forget(!fits);
             if fits {
+                self.most = self.most.max(1).saturating_mul(2);
                 return payload;
             }
-            let first = entry.vertices.start.max(self.writer.base());
-            let end = (first + (entry.vertices.end - first) / 2).max(entry.vertices.start + 1);
-            self.writer.end_at(entry, end);
+            self.most = (end - first) / 2;
         }
     }
 
