@@ -390,6 +390,36 @@ fn a_mesh_is_coded_unless_told_otherwise_and_says_what_is_rounded() {
     assert_eq!(exact("coded"), exact("raw"));
 }
 
+/// Needs an adapter, as the tests of the renderer do, and fails without one.
+#[cfg(feature = "gpu")]
+#[test]
+fn the_demo_uploads_to_a_gpu_what_each_picture_adds() {
+    let place = Workplace::new();
+    let light = "usemtl light\nv 10 10 60\nv 20 10 60\nv 10 20 60\nf 901 903 902\n";
+    place.write("room.mtl", support::ROOM_MTL.as_bytes());
+    let scene = format!("mtllib room.mtl\nusemtl white\n{}o lamp\n{light}", sheet(30));
+    place.write("sheet.obj", scene.as_bytes());
+    let demo = |renderer: &str| {
+        let arguments = ["demo", "--scene", "sheet.obj", "--renderer", renderer, "--size", "64x48"];
+        place.ok(&[&arguments[..], &["--photons", "2000", "--grid", "3x3x3", "--out", "out"]].concat());
+        let report = json(&place.read("out/demo.json"));
+        let pictures = report["pictures"].as_array().expect("a list").clone();
+        let of = |key: &str| pictures.iter().map(|picture| picture[key].as_u64()).collect::<Vec<_>>();
+        (of("vertices_drawn"), of("uploaded_mesh_bytes"))
+    };
+    let (on_cpu, nothing) = demo("cpu");
+    assert_eq!(nothing, [None; 4]);
+    let (on_gpu, uploaded) = demo("gpu");
+    assert_eq!(on_gpu, on_cpu);
+    let [Some(first), Some(same), Some(more), Some(all)] = uploaded[..] else { panic!("{uploaded:?}") };
+    assert!(on_gpu[0] == on_gpu[1] && on_gpu[2] < on_gpu[3], "{on_gpu:?}");
+    assert_eq!(same, 0, "the second picture shows the same level");
+    // Position and normal of 24 bytes a vertex, three corners of 4 bytes a face, of which there are not quite two a vertex.
+    let [coarse, fine] = [0, 3].map(|k| on_gpu[k].expect("vertices"));
+    assert!(first <= 48 * coarse && more <= 48 * on_gpu[2].expect("vertices"), "{uploaded:?}");
+    assert!(all > 24 * (fine - on_gpu[2].expect("vertices")) && all <= 48 * fine, "{uploaded:?}");
+}
+
 #[test]
 fn weights_of_attributes_count_in_the_stored_errors() {
     let place = Workplace::new();
