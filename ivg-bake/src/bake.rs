@@ -242,7 +242,8 @@ fn lights(scene: &Scene, flat: &FlatScene, effects: Effects) -> Vec<BakedLight> 
         scene.materials.iter().zip(used).filter(|(m, used)| *used && m.emission != glam::Vec3::ZERO);
     let surfaces = emissive.map(|(material, _)| BakedLight { name: material.name.clone(), direct: false });
     let placed = scene.lights.iter().map(|light| BakedLight { name: light.name.clone(), direct: false });
-    let sky = (effects.sky && scene.sky.is_some()).then(|| BakedLight { name: "sky".into(), direct: true });
+    let sky =
+        (effects.sky && scene.mean_sky().is_some()).then(|| BakedLight { name: "sky".into(), direct: true });
     surfaces.chain(placed).chain(sky).collect()
 }
 

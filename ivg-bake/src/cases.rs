@@ -8,6 +8,7 @@ use core::f64::consts::PI;
 use glam::{DAffine3, DVec3, Vec3};
 use ivg_scene::{
     Effect, EffectPlan, FlatScene, Light, LightKind, Material, Mesh, Need, Node, PlannedEffect, Scene,
+    SkyImage,
 };
 
 use crate::{BakeError, BakeOptions, BakeResult, Silent, bake};
@@ -129,6 +130,13 @@ impl SceneBuilder {
         self.scene.sky = Some(Vec3::splat(radiance));
     }
 
+    /// Gives the scene a sky whose image is `texels` of 2 columns and 2 rows: above and below, each left and right \[W/(m² sr)\].
+    pub fn sky_image(&mut self, texels: [f32; 4]) {
+        let texels = texels.map(|radiance| [radiance; 3]).to_vec();
+        self.scene.sky_image =
+            Some(SkyImage { name: "quarters".into(), width: 2, height: 2, rotation: 0.0, texels });
+    }
+
     /// The scene, and all its triangles in world space.
     #[must_use]
     pub fn build(mut self) -> (Scene, FlatScene) {
@@ -156,7 +164,7 @@ pub fn plan(scene: &Scene, max_bounces: u32) -> EffectPlan {
             planned(Effect::DiffuseIndirect, true),
             planned(Effect::Mirrors, scene.materials.iter().any(|m| m.specular > 0.0)),
             planned(Effect::Glass, scene.materials.iter().any(|m| m.transmission > 0.0)),
-            planned(Effect::Sky, scene.sky.is_some()),
+            planned(Effect::Sky, scene.mean_sky().is_some()),
         ],
         max_bounces,
         energy_cutoff: 1e-3,

@@ -9,6 +9,7 @@ use crate::BakeError;
 use crate::sampling::hemisphere;
 use crate::sampling::light::AliasTable;
 use crate::sampling::rng::{Purpose, Stream, unit};
+use crate::sampling::sky::SkyTable;
 use crate::space::Space;
 use crate::surface::{SurfacePoint, Surfaces, usable};
 
@@ -17,12 +18,15 @@ use crate::surface::{SurfacePoint, Surfaces, usable};
 pub(crate) struct Emitters {
     lights: Vec<Emitter>,
     choice: AliasTable,
-    /// Lights that a point can be lit by from one place or direction: all but the sky.
+    /// Lights that a point can be lit by from one place or direction: all but an even sky.
     placed: Vec<usize>,
     placed_choice: AliasTable,
     placed_power: f64,
     total: f64,
     sky: Vec3,
+    sky_image: Option<SkyTable>,
+    /// Share of the power that comes from the sky.
+    sky_share: f64,
     /// Metres per bake unit.
     metre: f64,
     world: Sphere,
@@ -51,6 +55,7 @@ enum Kind {
     Spot { position: Vec3, axis: Vec3, intensity: Vec3, cos_inner: f32, cos_outer: f32 },
     Directional { direction: Vec3, irradiance: Vec3 },
     Sky,
+    SkyImage,
 }
 
 /// A photon as it leaves a light.
@@ -120,7 +125,7 @@ impl Emitters {
             let strength = match kind {
                 Kind::Point { intensity, .. } | Kind::Spot { intensity, .. } => intensity,
                 Kind::Directional { irradiance, .. } => irradiance,
-                Kind::Triangle { .. } | Kind::Sky => Vec3::ZERO,
+                Kind::Triangle { .. } | Kind::Sky | Kind::SkyImage => Vec3::ZERO,
             };
             usable(strength, f32::MAX, "strength", || format!("light {}", light.name))?;
             add(kind, power);
@@ -128,6 +133,12 @@ impl Emitters {
         let sky = if with_sky { scene.sky.unwrap_or(Vec3::ZERO) } else { Vec3::ZERO };
         // Radiance L from everywhere crosses a sphere's cross-section with 4 pi L from all directions together.
         add(Kind::Sky, 4.0 * PI * disk * sky.as_dvec3());
+        let sky_image = scene.sky_image.as_ref().filter(|_| with_sky).map(SkyTable::new);
+        let sky_image = sky_image.filter(|table| table.brightest() > 0.0);
+        if let Some(table) = &sky_image {
+            // Colours differ from texel to texel.
+            add(Kind::SkyImage, DVec3::splat(disk * table.brightest()));
+        }
 
         let powers: Vec<f64> = lights.iter().map(|l| l.power).collect();
         let placed: Vec<usize> =
@@ -138,7 +149,21 @@ impl Emitters {
             return Err(BakeError::NoLight);
         }
         let (placed_choice, placed_power) = (AliasTable::new(&placed_powers), placed_powers.iter().sum());
-        Ok(Self { lights, choice, placed, placed_choice, placed_power, total, sky, metre, world })
+        let outside = lights.iter().filter(|light| matches!(light.kind, Kind::Sky | Kind::SkyImage));
+        let sky_share = outside.map(|light| light.power).sum::<f64>() / total;
+        Ok(Self {
+            lights,
+            choice,
+            placed,
+            placed_choice,
+            placed_power,
+            total,
+            sky,
+            sky_image,
+            sky_share,
+            metre,
+            world,
+        })
     }
 
     /// The power that a photon of share 1 stands for, times the photon count \[W\]: the sum over lights of the power of
@@ -149,12 +174,18 @@ impl Emitters {
 
     /// Share of the photons that come from the sky, in [0, 1].
     pub(crate) fn sky_share(&self) -> f64 {
-        1.0 - self.placed_power / self.total
+        self.sky_share
     }
 
-    /// Radiance of the sky that is simulated \[W/(m² sr)\].
+    /// Radiance of the even sky that is simulated \[W/(m² sr)\].
     pub(crate) fn sky(&self) -> Vec3 {
         self.sky
+    }
+
+    /// Radiance of the image of a sky that is simulated, from the unit direction `towards` \[W/(m² sr)\]. It is among the
+    /// lights of [`Emitters::arrive`].
+    pub(crate) fn sky_image(&self, towards: Vec3) -> Vec3 {
+        self.sky_image.as_ref().map_or(Vec3::ZERO, |table| table.radiance(towards))
     }
 
     /// A photon of `stream`. A light is chosen in proportion to the power of its brightest channel, so that no channel
@@ -180,6 +211,12 @@ impl Emitters {
                 let direction = hemisphere::sphere([u[0], u[1]]);
                 (self.start(direction, [u[2], u[3]]), direction, true)
             }
+            Kind::SkyImage => {
+                let Some(table) = &self.sky_image else { unreachable!("the light comes with its table") };
+                let (towards, colour) = table.draw(stream, 0);
+                let origin = self.start(-towards, [u[2], u[3]]);
+                return Emission { origin, direction: -towards, power: colour, deposit_first: true };
+            }
         };
         Emission { origin, direction, power: light.colour, deposit_first }
     }
@@ -192,7 +229,7 @@ impl Emitters {
     }
 
     /// Light from one place on one light, chosen in proportion to power, as it arrives at `point` (bake space) if
-    /// nothing is in between. `None` where that place sends nothing there. The sky is not among these lights.
+    /// nothing is in between. `None` where that place sends nothing there. An even sky is not among these lights.
     #[inline]
     pub(crate) fn arrive(&self, point: Vec3, stream: &Stream, step: u32) -> Option<Arrival> {
         if self.placed_choice.is_empty() {
@@ -232,6 +269,11 @@ impl Emitters {
                 (direction, distance, intensity, factor / metres(distance).powi(2))
             }
             Kind::Directional { direction, irradiance } => (-direction, f32::MAX, irradiance, 1.0),
+            Kind::SkyImage => {
+                let table = self.sky_image.as_ref()?;
+                let (towards, colour) = table.draw(stream, step);
+                (towards, f32::MAX, colour, table.brightest())
+            }
             Kind::Sky => return None,
         };
         let irradiance = (strength.as_dvec3() * (factor * weight)).as_vec3();

@@ -212,6 +212,15 @@ fn check(scene: &Scene, flat: &FlatScene) -> Result<(), BakeError> {
     if let Some(sky) = scene.sky {
         usable(sky, f32::MAX, "radiance", || "sky".into())?;
     }
+    if let Some(sky) = &scene.sky_image {
+        let object = || format!("sky image {}", sky.name);
+        if sky.texels.is_empty() || sky.texels.len() as u64 != u64::from(sky.width) * u64::from(sky.height) {
+            let value = format!("{} texels", sky.texels.len());
+            return Err(BakeError::BadNumber { object: object(), what: "size", value });
+        }
+        usable(Vec3::splat(sky.rotation.abs()), f32::MAX, "rotation", object)?;
+        sky.texels.iter().try_for_each(|t| usable(Vec3::from_array(*t), f32::MAX, "radiance", object))?;
+    }
     if let Some((index, position)) = flat.positions.iter().enumerate().find(|(_, p)| !p.is_finite()) {
         let object = format!("vertex {index}");
         return Err(BakeError::BadNumber { object, what: "position", value: position.to_string() });

@@ -257,7 +257,7 @@ impl Stage<'_> {
         let (mut direction, mut next) = (direction, first);
         for bounce in 1..=REACH_BOUNCES {
             let Some(hit) = next else {
-                return self.emitters.sky().max_element() > 0.0;
+                return (self.emitters.sky() + self.emitters.sky_image(direction)).max_element() > 0.0;
             };
             let surface = self.surfaces.point(hit.triangle, hit.weights);
             if self.surfaces.emission(hit.triangle, surface.normal, -direction).max_element() > 0.0 {

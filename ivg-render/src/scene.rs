@@ -41,7 +41,8 @@ pub struct RenderScene {
     pub textures: Vec<Texture>,
     /// Lights without a surface.
     pub lights: Vec<Light>,
-    /// Radiance behind everything \[W/(m² sr)\]; it lights nothing here, what the sky adds is in the grid.
+    /// Radiance behind everything \[W/(m² sr)\], of the image of a sky its mean; it lights nothing here, what the sky adds is in
+    /// the grid.
     pub sky: Option<Vec3>,
     /// From where the scene is seen.
     pub camera: Camera,
@@ -67,7 +68,7 @@ impl RenderScene {
             materials: scene.materials.clone(),
             textures: scene.textures.clone(),
             lights: scene.lights.clone(),
-            sky: scene.sky,
+            sky: scene.mean_sky(),
             camera,
             grid: None,
         }

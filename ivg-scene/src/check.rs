@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::{Camera, Light, LightKind, Material, Mesh, Scene, SceneError, Texture};
+use crate::{Camera, Light, LightKind, Material, Mesh, Scene, SceneError, SkyImage, Texture};
 
 /// How far the square of a unit vector's length may be from 1: some ten times what f32 rounding leaves.
 const UNIT_TOLERANCE: f32 = 1e-5;
@@ -21,6 +21,7 @@ impl Scene {
             .or_else(|| self.nodes.iter().find_map(|n| fault("node", &n.name, self.node(n))))
             .or_else(|| self.lights.iter().find_map(|l| fault("light", &l.name, light(l))))
             .or_else(|| self.sky.and_then(|s| fault("sky", &self.name, radiant("radiance", s))))
+            .or_else(|| self.sky_image.as_ref().and_then(|s| fault("sky image", &s.name, sky_image(s))))
             .or_else(|| self.camera.and_then(|c| fault("camera", &self.name, camera(&c))));
         found.map_or(Ok(()), Err)
     }
@@ -33,7 +34,7 @@ impl Scene {
     pub fn require_light(&self) -> Result<(), SceneError> {
         let emissive = |m: &u32| self.materials.get(*m as usize).is_some_and(|m| m.emission != Vec3::ZERO);
         let lit = self.lights.iter().any(|l| l.kind.strength() != Vec3::ZERO)
-            || self.sky.is_some_and(|s| s != Vec3::ZERO)
+            || self.mean_sky().is_some_and(|s| s != Vec3::ZERO)
             || (self.nodes.iter().filter_map(|n| self.meshes.get(n.mesh as usize)))
                 .any(|mesh| mesh.triangle_materials.iter().any(emissive));
         if lit { Ok(()) } else { Err(SceneError::NoLight { scene: self.name.clone() }) }
@@ -132,6 +133,17 @@ fn texture(t: &Texture) -> Option<String> {
     }
     (t.texels.len() as u64 != expected)
         .then(|| format!("{} bytes instead of {expected} for {}x{}", t.texels.len(), t.width, t.height))
+}
+
+fn sky_image(s: &SkyImage) -> Option<String> {
+    let expected = u64::from(s.width) * u64::from(s.height);
+    if expected == 0 || s.texels.len() as u64 != expected {
+        return Some(format!("{} texels for {}x{}", s.texels.len(), s.width, s.height));
+    }
+    if !s.rotation.is_finite() {
+        return Some(format!("rotation {} is not finite", s.rotation));
+    }
+    s.texels.iter().find_map(|t| radiant("radiance", Vec3::from_array(*t)))
 }
 
 fn light(l: &Light) -> Option<String> {

@@ -23,6 +23,7 @@ mod material;
 mod mesh;
 pub mod plan;
 mod scene;
+mod sky;
 mod solid;
 
 pub use camera::Camera;
@@ -34,4 +35,5 @@ pub use material::{Lobes, Material, Texture, TextureFormat};
 pub use mesh::Mesh;
 pub use plan::{Cost, Effect, EffectPlan, Need, PlanOptions, PlannedEffect};
 pub use scene::{FlatScene, Node, Scene, Unsupported};
+pub use sky::SkyImage;
 pub use solid::Side;

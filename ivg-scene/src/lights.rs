@@ -7,7 +7,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::geometry::snapped_origin;
-use crate::{Camera, Light, LightKind, Material, Mesh, Node, Scene, SceneError};
+use crate::import::folder::Folder;
+use crate::import::image;
+use crate::{Camera, Light, LightKind, Material, Mesh, Node, Scene, SceneError, SkyImage};
 
 /// Longest lights file \[bytes\].
 pub(crate) const MAX_BYTES: u64 = 1 << 20;
@@ -19,10 +21,28 @@ const DEFAULT_FOV: f64 = 45.0;
 #[serde(deny_unknown_fields)]
 struct File {
     unit: Option<Spanned<f64>>,
-    sky: Option<Spanned<[f64; 3]>>,
+    sky: Option<Spanned<SkyEntry>>,
     camera: Option<Spanned<CameraEntry>>,
     #[serde(default)]
     light: Vec<Spanned<LightEntry>>,
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "sky is neither three numbers nor a table of `image`, `rotation` and `scale` with an image"
+)]
+enum SkyEntry {
+    Even([f64; 3]),
+    Image(SkyImageEntry),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SkyImageEntry {
+    image: String,
+    rotation: Option<f64>,
+    scale: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -63,13 +83,23 @@ struct LightEntry {
 }
 
 /// Adds what the lights file `text` says to a scene: first the scene is scaled by its `unit`, then lights, sky and
-/// camera are added (a camera replaces the scene's own).
+/// camera are added (a camera replaces the scene's own). Only [`import::load`](crate::import::load) reads the image of a sky.
 ///
 /// # Errors
 ///
 /// [`SceneError::Line`] for text that is not TOML, unknown or missing keys, and values out of range. The scene may be
 /// changed in part then.
 pub fn apply(scene: &mut Scene, file: &str, text: &str) -> Result<(), SceneError> {
+    apply_beside(scene, file, text, &Folder::none())
+}
+
+/// As [`apply`], with the files of a folder.
+pub(crate) fn apply_beside(
+    scene: &mut Scene,
+    file: &str,
+    text: &str,
+    folder: &Folder,
+) -> Result<(), SceneError> {
     let line_at =
         |offset: usize| 1 + text.as_bytes()[..offset.min(text.len())].iter().filter(|b| **b == b'\n').count();
     let parsed: File = toml::from_str(text).map_err(|e| {
@@ -87,7 +117,11 @@ pub fn apply(scene: &mut Scene, file: &str, text: &str) -> Result<(), SceneError
         scale(scene, unit);
     }
     if let Some(sky) = &parsed.sky {
-        scene.sky = Some(radiometric("sky", *sky.get_ref()).map_err(fail(sky.span().start))?);
+        let fail = fail(sky.span().start);
+        match sky.get_ref() {
+            SkyEntry::Even(radiance) => scene.sky = Some(radiometric("sky", *radiance).map_err(fail)?),
+            SkyEntry::Image(entry) => scene.sky_image = Some(entry.read(folder).map_err(fail)?),
+        }
     }
     if let Some(camera) = &parsed.camera {
         scene.camera = Some(camera.get_ref().read(unit).map_err(fail(camera.span().start))?);
@@ -114,6 +148,23 @@ fn scale(scene: &mut Scene, unit: f64) {
     if let Some(camera) = &mut scene.camera {
         camera.eye *= unit;
         camera.target *= unit;
+    }
+}
+
+/// Longest image of a sky \[bytes\].
+const MAX_SKY_FILE: u64 = 1 << 30;
+
+impl SkyImageEntry {
+    fn read(&self, folder: &Folder) -> Result<SkyImage, String> {
+        let (rotation, scale) = (self.rotation.unwrap_or(0.0), self.scale.unwrap_or(1.0));
+        if !(rotation.is_finite() && scale.is_finite() && scale >= 0.0) {
+            return Err(format!(
+                "sky: rotation {rotation} and scale {scale} are not a number of degrees and one of at least 0"
+            ));
+        }
+        let bytes = folder.read(&self.image, MAX_SKY_FILE).map_err(|e| format!("sky: {}", e.0))?;
+        image::decode_sky(&self.image, &bytes, scale as f32, rotation.to_radians() as f32)
+            .map_err(|why| format!("sky: \"{}\" {why}", self.image))
     }
 }
 

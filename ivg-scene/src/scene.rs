@@ -1,6 +1,6 @@
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
-use crate::{Camera, Light, Material, Mesh, Texture};
+use crate::{Camera, Light, Material, Mesh, SkyImage, Texture};
 
 /// A scene as imported: meshes placed by nodes, materials, lights, perhaps a camera.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,12 +19,26 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Radiance that arrives from everywhere outside the scene, linear RGB \[W/(m² sr)\].
     pub sky: Option<Vec3>,
+    /// Radiance from outside that differs from direction to direction; adds to `sky`.
+    pub sky_image: Option<SkyImage>,
     /// The camera the scene or its lights file names.
     pub camera: Option<Camera>,
     /// What the file asks for and this release cannot do.
     pub unsupported: Vec<Unsupported>,
     /// What was assumed, repaired or left out while reading, one sentence each.
     pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Mean radiance from outside over all directions \[W/(m² sr)\]: what is behind everything where a sky has to be one
+    /// colour. `None` without a sky.
+    #[must_use]
+    pub fn mean_sky(&self) -> Option<Vec3> {
+        match (self.sky, &self.sky_image) {
+            (sky, Some(image)) => Some(sky.unwrap_or(Vec3::ZERO) + image.mean()),
+            (sky, None) => sky,
+        }
+    }
 }
 
 /// A mesh placed in the world.

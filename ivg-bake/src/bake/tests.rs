@@ -389,3 +389,53 @@ fn progress_reaches_the_end_and_cancelling_stops_early() {
     let BakeError::Cancelled { done, total: 10_000_000 } = error else { panic!("{error}") };
     assert!((5000..100_000).contains(&done), "{done}");
 }
+
+/// Quarters of a sky of different radiance, and a speck of dust: from the left half above 1 and below 2, from the right 3 and 4.
+/// Each quarter gives the axis it is cut by π/2 of its radiance, across π/2 as well.
+#[test]
+fn the_image_of_a_sky_is_in_the_grid_and_the_oracle_finds_the_same() {
+    let mut builder = SceneBuilder::default();
+    let black = builder.material(0.0, 0.0, true);
+    builder.cuboid(Vec3::splat(-1e-3), Vec3::splat(1e-3), black, false);
+    builder.sky_image([1.0, 3.0, 2.0, 4.0]);
+    let (scene, flat) = builder.build();
+    let bounds = Some((DVec3::splat(0.1), DVec3::splat(0.5)));
+    let options = BakeOptions { dims: [3; 3], bounds, photons: 200_000, ..BakeOptions::default() };
+    let grid = bake(&scene, &flat, &plan(&scene, 8), &options, &Silent).unwrap().grid;
+    let mean = |h: usize| {
+        grid.vectors().iter().map(|v| f64::from(v[h][1][h / 2].abs())).sum::<f64>()
+            / grid.vectors().len() as f64
+    };
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    let sampling = Sampling { paths: 4096, seed: 1, threads: Some(2) };
+    let found = oracle.light(&[DVec3::splat(0.3)], &[], sampling, &Silent).unwrap().remove(0);
+    let half = 0.5 * core::f64::consts::PI;
+    // +x, −x, +y (above), −y, +z, −z: sums of the two quarters on that side, of all four halves where all are.
+    for (h, expected) in [7.0, 3.0, 4.0, 6.0, 5.0, 5.0].into_iter().enumerate() {
+        let expected = expected * half;
+        let path = found.vectors[h][1][h / 2].abs();
+        // 4096 evenly spread directions: borders of the quarters are met to 1 %.
+        assert!((path / expected - 1.0).abs() < 0.01, "{h}: {path} {expected}");
+        // Some 20,000 photons cross the block of cells; weights vary by less than their mean: 5 / √20,000.
+        assert!((mean(h) / expected - 1.0).abs() < 0.036, "{h}: {} {expected}", mean(h));
+    }
+    assert_eq!(scene.mean_sky(), Some(Vec3::splat(2.5)));
+}
+
+/// A white floor under the image of a sky: what it sends up is sampled light, once.
+#[test]
+fn a_floor_under_the_image_of_a_sky_is_lit_once() {
+    let mut builder = SceneBuilder::default();
+    let white = builder.material(0.8, 0.0, true);
+    builder.quad(Vec3::new(-50.0, 0.0, -50.0), Vec3::Z * 100.0, Vec3::X * 100.0, white);
+    builder.sky_image([1.0, 3.0, 0.0, 0.0]);
+    let (scene, flat) = builder.build();
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    let sampling = Sampling { paths: 20_000, seed: 1, threads: Some(2) };
+    let found = oracle.irradiance(&[(DVec3::Y * 0.1, Vec3::NEG_Y)], sampling, &Silent).unwrap()[0];
+    // Radiosity 0.8 · π · 2; the floor's edge is 0.1 / 50 away from the horizon.
+    let expected = 0.8 * core::f64::consts::PI * 2.0;
+    let off = (found.irradiance.y - expected).abs();
+    assert!(off < 5.0 * found.standard_error.y + 1e-4, "{found:?} {expected}");
+    assert!(found.standard_error.y < 0.02 * expected);
+}

@@ -156,7 +156,9 @@ impl Stage<'_> {
         let (mut radiance, mut throughput) = (DVec3::ZERO, DVec3::ONE);
         for bounce in 1..=MOST_BOUNCES {
             let Some(hit) = self.accel.closest_hit(origin, direction, f32::MAX) else {
-                return radiance + throughput * self.emitters.sky().as_dvec3();
+                // Later on the image of a sky has been sampled.
+                let image = if bounce == 1 { self.emitters.sky_image(direction) } else { Vec3::ZERO };
+                return radiance + throughput * (self.emitters.sky() + image).as_dvec3();
             };
             let point = self.surfaces.point(hit.triangle, hit.weights);
             if bounce == 1 && direct {

@@ -3,3 +3,4 @@
 pub(crate) mod hemisphere;
 pub(crate) mod light;
 pub(crate) mod rng;
+pub(crate) mod sky;

@@ -22,6 +22,8 @@ pub(crate) enum Purpose {
     NextEvent = 5,
     /// Facets of a rough mirror.
     Facets = 6,
+    /// Texel of a sky.
+    Sky = 8,
     /// Which vertices light is gathered at to measure bias.
     Probe = 7,
 }

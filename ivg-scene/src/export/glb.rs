@@ -25,7 +25,7 @@ const UNSIGNED_INT: u32 = 5125;
 const NEAR_PLANE: f64 = 0.01;
 
 /// The scene as one binary glTF 2.0 file: meshes, nodes, materials, images as PNG, punctual lights, camera; the sky as
-/// `extras.skyRadiance` of the scene.
+/// `extras.skyRadiance` of the scene, of an image its mean.
 ///
 /// A mesh becomes one glTF mesh with one primitive for each material, in order of first use; all share the vertices.
 /// [`Mesh::origin`] goes into the matrices of the nodes, so **the space of a glTF mesh is that of the mesh minus its
@@ -65,7 +65,7 @@ pub fn write_glb(scene: &Scene, options: &GlbOptions) -> Result<Vec<u8>, SceneEr
         if !options.scene_extensions.is_empty() {
             top["extensions"] = Value::Object(options.scene_extensions.clone());
         }
-        if let Some(sky) = scene.sky {
+        if let Some(sky) = scene.mean_sky() {
             top["extras"] = json!({ SKY_KEY: sky.to_array() });
         }
         root["scene"] = 0.into();

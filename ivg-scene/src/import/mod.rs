@@ -14,9 +14,9 @@
 //! the folder of the scene file.
 
 mod compress;
-mod folder;
+pub(crate) mod folder;
 mod gltf;
-mod image;
+pub(crate) mod image;
 mod obj;
 mod ply;
 
@@ -48,7 +48,7 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Scene, SceneError> {
         let text = compress::read_file(file, lights::MAX_BYTES)?;
         let name = file.display().to_string();
         let text = String::from_utf8(text).map_err(|_| SceneError::file(&name, "is not UTF-8 text"))?;
-        lights::apply(&mut scene, &name, &text)?;
+        lights::apply_beside(&mut scene, &name, &text, &Folder::of(file))?;
     }
     scene.check()?;
     Ok(scene)

@@ -171,3 +171,47 @@ fn random_bytes_never_panic_the_readers() {
     }
     quickcheck::QuickCheck::new().tests(400).quickcheck(property as fn(Vec<u8>) -> bool);
 }
+
+/// A sky of 4 x 2 texels as Radiance HDR and as OpenEXR.
+fn sky_files() -> [(&'static str, Vec<u8>); 2] {
+    let texels: Vec<f32> = (0..24).map(|n| (n % 3) as f32 + 0.5).collect();
+    let pixels: Vec<::image::Rgb<f32>> = texels.chunks(3).map(|t| ::image::Rgb([t[0], t[1], t[2]])).collect();
+    let mut hdr = Vec::new();
+    ::image::codecs::hdr::HdrEncoder::new(&mut hdr).encode(&pixels, 4, 2).unwrap();
+    let mut exr = std::io::Cursor::new(Vec::new());
+    let image = ::image::DynamicImage::ImageRgb32F(::image::ImageBuffer::from_raw(4, 2, texels).unwrap());
+    image.write_to(&mut exr, ::image::ImageFormat::OpenExr).unwrap();
+    [("sky.hdr", hdr), ("sky.exr", exr.into_inner())]
+}
+
+#[test]
+fn skies_are_images_beside_the_lights_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("s.obj");
+    fs::write(&scene, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let load_with = |lights: &str| {
+        let file = folder.path().join("l.toml");
+        fs::write(&file, lights).unwrap();
+        load(&scene, &ImportOptions { lights: Some(file) })
+    };
+    for (name, bytes) in sky_files() {
+        fs::write(folder.path().join(name), bytes).unwrap();
+        let read = load_with(&format!("[sky]\nimage = \"{name}\"\nrotation = 180\nscale = 2\n")).unwrap();
+        read.require_light().unwrap();
+        let sky = read.sky_image.expect("a sky");
+        assert_eq!((sky.width, sky.height, sky.rotation), (4, 2, std::f32::consts::PI));
+        // Halves, one and a half, two and a half are exact in RGBE and in halves, times two.
+        assert!(sky.texels.iter().all(|t| *t == [1.0, 3.0, 5.0]), "{name}: {:?}", sky.texels);
+    }
+    fs::write(folder.path().join("flat.png"), b"\x89PNG\r\n\x1a\n").unwrap();
+    for (lights, what) in [
+        ("[sky]\nimage = \"../sky.hdr\"\n", "outside the folder"),
+        ("[sky]\nimage = \"none.hdr\"\n", "none.hdr"),
+        ("[sky]\nimage = \"flat.png\"\n", "neither a Radiance HDR nor an OpenEXR"),
+        ("[sky]\nimage = \"sky.hdr\"\nscale = -1\n", "scale -1"),
+        ("[sky]\nfile = \"sky.hdr\"\n", "sky is neither"),
+    ] {
+        let message = load_with(lights).expect_err(lights).to_string();
+        assert!(message.contains("l.toml:1: ") && message.contains(what), "{message}");
+    }
+}

@@ -119,7 +119,7 @@ fn lights(scene: &Scene, flat: &FlatScene) -> Vec<String> {
             None => format!("light \"{}\" ({} W/m²)", light.name, rgb(strength.as_dvec3())),
         });
     }
-    if let Some(sky) = scene.sky.filter(|s| *s != Vec3::ZERO) {
+    if let Some(sky) = scene.mean_sky().filter(|s| *s != Vec3::ZERO) {
         lights.push(format!("sky ({} W/(m² sr))", rgb(sky.as_dvec3())));
     }
     lights
@@ -253,12 +253,17 @@ fn vertex_colours(scene: &Scene) -> (Need, String) {
 }
 
 fn sky(scene: &Scene) -> (Need, String) {
-    match scene.sky {
-        Some(sky) if sky != Vec3::ZERO => {
-            (Need::Needed, format!("radiance {} W/(m² sr) from outside", rgb(sky.as_dvec3())))
+    let Some(mean) = scene.mean_sky().filter(|sky| *sky != Vec3::ZERO) else {
+        return (Need::NotNeeded, "the scene has no sky".into());
+    };
+    let mean = rgb(mean.as_dvec3());
+    let why = match &scene.sky_image {
+        Some(image) => {
+            format!("image \"{}\", radiance {mean} W/(m² sr) from outside on average", image.name)
         }
-        _ => (Need::NotNeeded, "the scene has no sky".into()),
-    }
+        None => format!("radiance {mean} W/(m² sr) from outside"),
+    };
+    (Need::Needed, why)
 }
 
 fn rgb(v: DVec3) -> String {

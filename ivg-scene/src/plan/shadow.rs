@@ -19,7 +19,7 @@ pub(super) fn proof_of_none(scene: &Scene, flat: &FlatScene) -> Option<&'static 
         return Some("all surfaces lie in one plane, which cannot shade itself");
     }
     // Light from outside may have to pass the surfaces; light from inside or on a convex shape passes none.
-    let outside = scene.sky.is_some_and(|s| s != Vec3::ZERO)
+    let outside = scene.mean_sky().is_some_and(|s| s != Vec3::ZERO)
         || scene.lights.iter().any(|light| match light.kind {
             LightKind::Point { position, .. } | LightKind::Spot { position, .. } => {
                 !hull.contains(position - flat.origin)

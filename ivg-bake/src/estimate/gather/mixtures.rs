@@ -26,7 +26,8 @@ impl Stage<'_> {
         let mut sampled = false;
         for bounce in 1..=MOST_BOUNCES {
             let Some(hit) = self.accel.closest_hit(origin, direction, f32::MAX) else {
-                return radiance + throughput * self.emitters.sky().as_dvec3();
+                let image = if sampled { Vec3::ZERO } else { self.emitters.sky_image(direction) };
+                return radiance + throughput * (self.emitters.sky() + image).as_dvec3();
             };
             let point = self.surfaces.point(hit.triangle, hit.weights);
             let seen = if bounce == 1 { direct } else { !sampled };
