@@ -2,9 +2,7 @@
 //! would make of a mesh. Bytes that a fuzzer changes rarely get as far.
 
 use crate::choices::Choices;
-use crate::vectors::edit::{DATA_OFFSET_AT, FILE_BYTES_AT, reseal_header};
-use crate::vectors::parts::{Parts, bits_for, packed};
-use ivg_wire::{ChunkKind, ContentId, write_chunk, write_end, write_record};
+use crate::vectors::parts::{Parts, bits_for, file_of, packed};
 use std::collections::BTreeMap;
 
 /// Vertices of a packet, at most, and packets.
@@ -13,12 +11,6 @@ const MOST_PACKETS: usize = 4;
 /// Faces of a packet, at most.
 const MOST_FACES: usize = 12;
 
-/// Places in the header, and its length (`spec/common.md` and `spec/pmesh.md`).
-const MINOR_AT: usize = 10;
-const HEADER_BYTES_AT: usize = 20;
-const COUNTS_AT: usize = 56;
-const MODE_AT: usize = 76;
-const HEADER_BYTES: usize = 152;
 /// Bits of `attributes`: colours, materials, seams.
 const COLOURS: u8 = 4;
 const MATERIALS: u8 = 8;
@@ -51,7 +43,7 @@ pub fn invented(choices: &mut Choices<'_>) -> Vec<u8> {
         let parts = packet(&mut mesh, vertices, attributes, choices);
         packets.push((parts, [mesh.parents.len(), mesh.owners.len(), mesh.corners.len()]));
     }
-    assembled(&mesh, attributes, &packets)
+    file_of(mesh.base, attributes, &packets)
 }
 
 fn packet(mesh: &mut Invented, vertices: usize, attributes: u8, choices: &mut Choices<'_>) -> Parts {
@@ -121,7 +113,7 @@ impl Invented {
         for slot in 0..3 * faces {
             let corner = &mut self.corners[slot / 3][slot % 3];
             let Some(wedges) = descendants.get(corner) else { continue };
-            if choices.byte() % 4 != 0 {
+            if !choices.byte().is_multiple_of(4) {
                 let number = choices.below(wedges.len());
                 *corner = wedges[number];
                 parts.slots.push(slot as u32);
@@ -131,38 +123,6 @@ impl Invented {
         parts.switch_count = parts.slots.len() as u32;
         parts.switch_to = packed(&bits, 1);
     }
-}
-
-/// The file of these packets, each with what there is at its end: vertices, wedges, faces.
-fn assembled(mesh: &Invented, attributes: u8, packets: &[(Parts, [usize; 3])]) -> Vec<u8> {
-    let content = ContentId(0x1234_5678_9ABC_DEF0);
-    let word = |n: usize| (n as u32).to_le_bytes();
-    let mut file = [&b"\x89PMS\r\n\x1A\n"[..], &[0; HEADER_BYTES - 8]].concat();
-    file[MINOR_AT] = 2;
-    file[HEADER_BYTES_AT..HEADER_BYTES_AT + 4].copy_from_slice(&word(HEADER_BYTES));
-    file[32..40].copy_from_slice(&content.0.to_le_bytes());
-    let counts = [mesh.parents.len(), mesh.owners.len(), mesh.corners.len(), mesh.base, packets.len()];
-    file[COUNTS_AT..MODE_AT].copy_from_slice(counts.map(word).as_flattened());
-    file[MODE_AT..MODE_AT + 3].copy_from_slice(&[1, 1, attributes]);
-
-    let payloads: Vec<Vec<u8>> = packets.iter().map(|(parts, _)| parts.payload()).collect();
-    let mut directory = Vec::new();
-    for ((_, ends), payload) in packets.iter().zip(&payloads) {
-        directory.extend_from_slice(ends.map(word).as_flattened());
-        directory.extend(word(payload.len()));
-        directory.extend(word(0));
-    }
-    write_chunk(&mut file, ChunkKind(*b"PDIR"), true, &directory, content);
-    let data = (file.len() as u64).to_le_bytes();
-    file[DATA_OFFSET_AT..DATA_OFFSET_AT + 8].copy_from_slice(&data);
-    for (k, payload) in (0..).zip(&payloads) {
-        write_record(&mut file, k, 0, payload, content);
-    }
-    let length = file.len() as u64 + 20;
-    write_end(&mut file, length, content);
-    file[FILE_BYTES_AT..FILE_BYTES_AT + 8].copy_from_slice(&length.to_le_bytes());
-    reseal_header(&mut file);
-    file
 }
 
 #[cfg(test)]

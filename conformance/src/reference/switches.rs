@@ -74,7 +74,7 @@ fn slots(payload: &[u8], low_at: usize, of: usize) -> Result<(Vec<usize>, usize)
     if ones.len() != count {
         return Err(wrong);
     }
-    let slots: Vec<usize> = (0..count).map(|i| (ones[i] - i << l) + lowest[i]).collect();
+    let slots: Vec<usize> = (0..count).map(|i| ((ones[i] - i) << l) + lowest[i]).collect();
     if slots.windows(2).any(|pair| pair[0] >= pair[1]) || slots.iter().any(|&slot| slot >= of) {
         return Err(wrong);
     }

@@ -1,6 +1,14 @@
 //! The parts of a raw packet (`spec/pmesh.md`, section 4), to be changed one by one and put together again, right or wrong.
 
+use super::edit::{CONTENT_ID_AT, DATA_OFFSET_AT, FILE_BYTES_AT, HEADER_BYTES_AT, reseal_header};
+use ivg_wire::{ChunkKind, ContentId, write_chunk, write_end, write_record};
 use pmesh_format::{Header, Positions};
+
+/// Places in the header, and its length (`spec/common.md` and `spec/pmesh.md`).
+const MINOR_AT: usize = 10;
+const COUNTS_AT: usize = 56;
+const MODE_AT: usize = 76;
+const HEADER_BYTES: usize = 152;
 
 /// What a raw packet holds. Nothing of it need be right.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -121,6 +129,41 @@ impl Parts {
         let [low, high] = self.slot_lists();
         [self.before_slots(), low, high, self.switch_to.clone()].concat()
     }
+}
+
+/// The file of these packets, each with what there is at its end: vertices, wedges, faces. Positions are binary32, all in a box
+/// without extent at the origin; `attributes` are the bits of the header.
+#[must_use]
+pub fn file_of(base: usize, attributes: u8, packets: &[(Parts, [usize; 3])]) -> Vec<u8> {
+    let content = ContentId(0x1234_5678_9ABC_DEF0);
+    let word = |n: usize| (n as u32).to_le_bytes();
+    let mut file = [&b"\x89PMS\r\n\x1A\n"[..], &[0; HEADER_BYTES - 8]].concat();
+    file[MINOR_AT] = 2;
+    file[HEADER_BYTES_AT..HEADER_BYTES_AT + 4].copy_from_slice(&word(HEADER_BYTES));
+    file[CONTENT_ID_AT..CONTENT_ID_AT + 8].copy_from_slice(&content.0.to_le_bytes());
+    let [vertices, wedges, faces] = packets.last().map_or([0; 3], |&(_, ends)| ends);
+    let counts = [vertices, wedges, faces, base, packets.len()];
+    file[COUNTS_AT..MODE_AT].copy_from_slice(counts.map(word).as_flattened());
+    file[MODE_AT..MODE_AT + 3].copy_from_slice(&[1, 1, attributes]);
+
+    let payloads: Vec<Vec<u8>> = packets.iter().map(|(parts, _)| parts.payload()).collect();
+    let mut directory = Vec::new();
+    for ((_, ends), payload) in packets.iter().zip(&payloads) {
+        directory.extend_from_slice(ends.map(word).as_flattened());
+        directory.extend(word(payload.len()));
+        directory.extend(word(0));
+    }
+    write_chunk(&mut file, ChunkKind(*b"PDIR"), true, &directory, content);
+    let data = (file.len() as u64).to_le_bytes();
+    file[DATA_OFFSET_AT..DATA_OFFSET_AT + 8].copy_from_slice(&data);
+    for (k, payload) in (0..).zip(&payloads) {
+        write_record(&mut file, k, 0, payload, content);
+    }
+    let length = file.len() as u64 + 20;
+    write_end(&mut file, length, content);
+    file[FILE_BYTES_AT..FILE_BYTES_AT + 8].copy_from_slice(&length.to_le_bytes());
+    reseal_header(&mut file);
+    file
 }
 
 /// ⌈log₂ x⌉.

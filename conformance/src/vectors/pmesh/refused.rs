@@ -29,7 +29,7 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     list.extend(packets::faces(octahedron, twin(SEAM)));
     list.extend(packets::wedges(twin(SEAM)));
     list.extend(super::refused_switches::refused(&twin));
-    list.extend(least_bytes(&twin));
+    list.extend(least_bytes(twin));
     list.extend(super::refused_coded::refused(twin));
     list.into_iter().map(|refused| Vector::refused(Format::Pmesh, refused)).collect()
 }

@@ -30,14 +30,14 @@ pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             CLOSED,
             "coded-short",
             mesh::CODED_LENGTH,
-            with_payload(closed, last, &whole[..whole.len() - 2]),
-            "the last word of a packet is missing",
+            one_edit(closed, last, mesh::CODED_LENGTH, |at| [&whole[..at], &whole[at + 2..]].concat()),
+            "a word of a packet is missing",
         ),
         (
             CLOSED,
             "coded-long",
             mesh::CODED_LENGTH,
-            with_payload(closed, last, &[&whole[..], &[0; 2]].concat()),
+            one_edit(closed, last, mesh::CODED_LENGTH, |at| [&whole[..at], &[0; 2], &whole[at..]].concat()),
             "a word behind the last symbol of a packet that is long enough",
         ),
         (
@@ -65,7 +65,9 @@ pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             HUB,
             "coded-padding",
             mesh::CODED_PADDING,
-            with_payload(twin(HUB), 0, &[&hub[..hub.len() - 1], &[1]].concat()),
+            one_edit(twin(HUB), 0, mesh::CODED_PADDING, |at| {
+                [&hub[..at], &[hub[at] ^ 1], &hub[at + 1..]].concat()
+            }),
             "a byte of padding that is not 0",
         ),
         (
@@ -86,7 +88,9 @@ pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             HUB,
             "coded-work",
             mesh::CODED_WORK,
-            with_payload(twin(HUB), 0, &hub[..hub.len() * 3 / 4]),
+            one_edit(twin(HUB), 0, mesh::CODED_WORK, |at| {
+                [&hub[..at], &hub[(at + hub.len() / 4).min(hub.len())..]].concat()
+            }),
             "a packet too short for the faces that it makes a reader look at",
         ),
         search(CLOSED, "coded-position", mesh::POSITION, "a point outside the lattice"),
@@ -96,6 +100,19 @@ pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
         search(TRIANGLE, "coded-face-twice", mesh::FACE_VERTICES, "a face of the base names a vertex twice"),
         search(IRREGULAR, "coded-third", mesh::CORNER, "a new face names a vertex that has not arrived"),
     ]
+}
+
+/// The file with the first edit of a packet's payload, at whichever byte, for which a reader reports this code there.
+fn one_edit(file: &[u8], k: u32, code: Code, edit: impl Fn(usize) -> Vec<u8>) -> Vec<u8> {
+    let edits = (0..payload(file, k).len() - 1).map(|at| with_payload(file, k, &edit(at)));
+    let reported = |changed: &Vec<u8>| {
+        let error = check(changed, &Limits::default()).err();
+        error.is_some_and(|e| e.code() == code.number() && matches!(e.part(), Part::Record(_)))
+    };
+    edits
+        .into_iter()
+        .find(reported)
+        .unwrap_or_else(|| panic!("no edit makes a reader report {}", code.number()))
 }
 
 /// The file with the first changed byte for which a reader reports this code in a packet.

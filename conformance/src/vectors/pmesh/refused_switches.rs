@@ -4,7 +4,7 @@ use super::super::Refused;
 use super::super::parts::{Parts, packed, shape};
 use super::refused::{payload, with_payload};
 use super::refused_packets::lie;
-use super::variants::{DEEP, DESCENDANTS};
+use super::variants::{DEEP, DESCENDANTS, MANY};
 use super::{OCTAHEDRON, SEAM, header};
 use pmesh_format::codes as mesh;
 
@@ -26,6 +26,7 @@ pub(super) fn refused<'a>(twin: &impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
     list.extend(slots(twin(SEAM), twin(BORDER)));
     list.extend(becomes(twin(SEAM), twin(DESCENDANTS)));
     list.extend(work(twin(DEEP)));
+    list.extend(blocks(twin(MANY)));
     list
 }
 
@@ -152,4 +153,34 @@ fn becomes(seam: &[u8], file: &[u8]) -> Vec<Refused> {
 fn work(file: &[u8]) -> Vec<Refused> {
     let deeper = lie(file, 1, |parts| parts.corners.last_mut().expect("a face")[2] += 1);
     vec![(DEEP, "deep", mesh::SWITCH_WORK, deeper, "corners that pass one vertex more than the bytes allow")]
+}
+
+/// Lists of more than a byte. Slots 256 and 257, which have the same high bits, are the last of 256 and the first of the next.
+fn blocks(file: &[u8]) -> Vec<Refused> {
+    let swapped = lie(file, 1, |parts| parts.slots.swap(255, 256));
+    let padded = |part: usize| with_bytes(file, 1, |bytes| *bytes[part].last_mut().expect("a byte") |= 0x80);
+    vec![
+        (MANY, "slots-descend-far", mesh::SWITCH_SLOTS, swapped, "slots that do not ascend after the 256th"),
+        (
+            MANY,
+            "slots-low-padding-far",
+            mesh::PACKET_PADDING,
+            padded(0),
+            "a bit behind many bytes of low bits",
+        ),
+        (
+            MANY,
+            "slots-high-padding-far",
+            mesh::PACKET_PADDING,
+            padded(1),
+            "a bit behind many bytes of high bits",
+        ),
+        (
+            MANY,
+            "switch-padding-far",
+            mesh::PACKET_PADDING,
+            padded(2),
+            "a bit behind many bytes of what corners become",
+        ),
+    ]
 }

@@ -1,5 +1,6 @@
 //! Accepted files of every mode and every encoding of positions, of meshes that are surfaces and of some that are not.
 
+use super::super::parts::{Parts, bits_for, file_of, packed};
 use super::super::{Format, Vector};
 use super::refused_packets::lie;
 use crate::surfaces::{Kind, surface};
@@ -332,6 +333,10 @@ fn raw_packets() -> Vec<Variant> {
     ]
 }
 
+/// More slots than a reader may look at together, which ascend by ones.
+pub(super) const MANY: &str = "0056-raw-many-slots";
+const MANY_SLOTS: u32 = 260;
+
 /// Vertices of [`DEEP`] that each collapse onto the one before, and faces of these.
 const CHAIN: (u32, usize) = (60, 76);
 
@@ -353,6 +358,24 @@ fn deep() -> Vec<u8> {
     })
 }
 
+/// Many faces on one triangle, each vertex of which splits into three: corners of some switch to one or the other of two.
+fn many_slots() -> Vec<u8> {
+    let (faces, end) = (180, 9);
+    let first = Parts { arrays: vec![0; 3 * 12], corners: vec![[0, 1, 2]; faces], ..Parts::default() };
+    let to: Vec<u32> = (0..MANY_SLOTS).map(|slot| slot / 2 % 2).collect();
+    let second = Parts {
+        switch_count: MANY_SLOTS,
+        arrays: vec![0; 6 * 12],
+        parents: vec![0, 1, 2, 0, 1, 2],
+        parent_bits: bits_for(end),
+        slots: (1..=MANY_SLOTS).collect(),
+        of: 3 * faces as u32,
+        switch_to: packed(&to, 1),
+        ..Parts::default()
+    };
+    file_of(3, 0, &[(first, [3, 3, faces]), (second, [end as usize, end as usize, faces])])
+}
+
 /// Faces in another order than that of the levels that introduce them: PMESH-FACE-05 says when they are there.
 fn out_of_order() -> Vec<u8> {
     let options = options(Mode::Raw, Positions::F32, PacketSize::Fixed(10));
@@ -363,6 +386,7 @@ fn out_of_order() -> Vec<u8> {
 fn by_hand() -> Vec<Vector> {
     let list = [
         ("0017-raw-out-of-order", out_of_order(), "faces that are not sorted by their level of introduction"),
+        (MANY, many_slots(), "so many corners switch that a reader may take them in blocks"),
         (DEEP, deep(), "corners that pass as many vertices as the bytes of their packet allow"),
     ];
     list.into_iter().map(|(name, file, why)| Vector::accepted(Format::Pmesh, name, file, why)).collect()
