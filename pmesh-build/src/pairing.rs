@@ -70,3 +70,6 @@ fn difference(attributes: &Wedges, a: u32, b: u32) -> f64 {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests;

@@ -58,16 +58,39 @@ fn vertices_that_came_before_count() {
     assert_eq!(there, [4, 6, 8]);
 }
 
+fn surface(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Surface {
+    let exact = positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect();
+    Surface::new(&IndexedMesh::from_positions(positions.to_vec(), triangles.to_vec()), exact)
+}
+
+/// An L in a plane. Moving the corner of its notch along the border spans the notch: the middle of the new edge is half a
+/// unit off either side.
 #[test]
-fn faces_that_span_a_valley_count() {
-    // Vertices 2 and 3 are on one bank, 6 and 7 on the other, 4 and 5 at the bottom. The bottom stays where it is, but the
-    // corner of the surface at vertex 0 is drawn into the air above the far bank.
-    let surface = strip(&[0.0, 0.0, -3.0, 0.0, 0.0]);
+fn new_edges_off_the_surface_count() {
+    let corners = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]
+        .map(|[x, y]| [f32::from(x as u8), f32::from(y as u8), 0.0]);
+    let surface = surface(&corners, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
     let mut hausdorff = Hausdorff::new(&surface);
-    // Vertex 4 onto 6: edge 2-6 is new, its middle (2, 0, 0) is farthest from the surface: from the slopes of 3 in 1.
-    let found = moving(&mut hausdorff, &surface, 4, 6, ALL);
-    let height = 9.0 / 10.0;
-    assert!(found >= height && !close(found, 0.0), "{found}");
+    assert_eq!(moving(&mut hausdorff, &surface, 3, 2, ALL), 0.25);
+}
+
+/// A tent over three corners, whose tip touches another face at vertex 2. Moving the tip there leaves its floor: no new edge,
+/// and the tip lies on the other face, but the middle of the floor is off the sides of the tent. The nearest one lies in
+/// the plane 2 x + y + z = 8 (mirrored, -2 x + y + z = 0), to which (2, 4/3, 0) has the distance 8/3 / √6.
+#[test]
+fn new_faces_off_the_surface_count() {
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [4.0, 0.0, 0.0],
+        [2.0, 4.0, 0.0],
+        [2.0, 1.0, 3.0],
+        [1.0, 1.0, 3.0],
+        [3.0, 1.0, 3.0],
+    ];
+    let surface = surface(&corners, &[[3, 0, 1], [3, 1, 2], [3, 2, 0], [2, 4, 5]]);
+    let mut hausdorff = Hausdorff::new(&surface);
+    let found = moving(&mut hausdorff, &surface, 3, 2, ALL);
+    assert!(close(found, 64.0 / 54.0), "{found}");
 }
 
 #[test]
