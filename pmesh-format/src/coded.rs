@@ -25,7 +25,6 @@ mod points;
 mod priors;
 mod rans;
 mod ring;
-mod rings;
 mod save;
 mod split;
 mod walk;
@@ -36,13 +35,13 @@ pub(crate) use live::Live;
 pub(crate) use order::arranged;
 pub(crate) use save::{Known, Saver, cells};
 
+use crate::slots::Slots;
 use attributes::{Brought, Wedged};
 use cut::Cuts;
 use geometry::{Cell, Residuals};
 use models::Binary;
 use points::{Point, Points};
 use rans::Coder;
-use rings::Rings;
 
 /// What is wrong with a payload, and at which byte of it.
 pub(crate) type Fault = (Code, usize);
@@ -120,7 +119,7 @@ pub(crate) struct State {
     models: Box<Models>,
     packets: u32,
     corners: Vec<[u32; 3]>,
-    rings: Rings,
+    slots: Slots,
     points: Points,
     /// [`Shape::history`] of each vertex.
     histories: Vec<u32>,
@@ -155,20 +154,6 @@ struct Changes {
     wedges: Brought,
 }
 
-impl Changes {
-    /// Notes which of so many slots switch, [`MOST`](ring::MOST) at most: the first of ascending order in bit 0.
-    fn switch(&mut self, count: usize, mask: u32) {
-        self.counts.push(count as u32);
-        self.masks.push(mask);
-    }
-
-    /// The same of any number.
-    fn switch_long(&mut self, chosen: &[bool]) {
-        self.counts.push(chosen.len() as u32);
-        self.long.extend_from_slice(chosen);
-    }
-}
-
 impl State {
     /// Before the first packet.
     pub(crate) fn new(base: u32, plan: Option<Plan>) -> Self {
@@ -176,7 +161,7 @@ impl State {
             models: Box::new(Models::new()),
             packets: 0,
             corners: Vec::new(),
-            rings: Rings::default(),
+            slots: Slots::default(),
             points: Points::default(),
             histories: Vec::new(),
             parents: Vec::new(),
@@ -209,22 +194,27 @@ impl State {
             self.wedged = Some(wedged);
         }
         let first = extent.vertices.start.max(self.base);
-        self.corners.truncate(extent.faces.start as usize);
-        // Corners on new vertices go back to what these came from.
-        for corner in self.corners.as_flattened_mut() {
-            while *corner >= first {
-                *corner = self.parents[(*corner - self.base) as usize];
+        for vertex in (first..self.base + self.parents.len() as u32).rev() {
+            let split = (vertex - self.base) as usize;
+            let before = split.checked_sub(1).map_or(0, |k| self.face_ends[k]);
+            let before = before.max(extent.faces.start);
+            self.pop_faces(before.min(self.corners.len() as u32));
+            let parent = self.parents[split];
+            for &slot in self.slots.of(vertex) {
+                self.corners.as_flattened_mut()[slot as usize] = parent;
             }
+            self.slots.merge(vertex, parent, |_, _| {});
+            self.parents.pop();
+            self.face_ends.pop();
         }
-        self.parents.truncate((first - self.base) as usize);
-        self.face_ends.truncate((first - self.base) as usize);
+        self.pop_faces(extent.faces.start);
         for &(vertex, shape) in changes.shapes.iter().rev() {
             self.set_shape(vertex, shape);
         }
         let start = extent.vertices.start as usize;
         self.points.truncate(start);
         self.histories.truncate(start);
-        self.rings.rebuild(start, &self.corners);
+        self.slots.resize(start, usize::MAX);
     }
 
     /// The cell of a vertex.
@@ -251,6 +241,15 @@ impl State {
     fn push_vertex(&mut self, cell: Cell, shape: Shape) {
         self.points.push(cell, shape);
         self.histories.push(shape.history);
+    }
+
+    /// Takes faces away until there are that many.
+    fn pop_faces(&mut self, count: u32) {
+        while self.corners.len() > count as usize {
+            for corner in self.corners.pop().unwrap_or_default() {
+                self.slots.pop(corner);
+            }
+        }
     }
 }
 

@@ -36,6 +36,21 @@ impl Slots {
         resize(&mut self.blocks, vertices, total, [0; BLOCK]);
     }
 
+    /// How many slots `vertex` has.
+    #[inline]
+    pub(crate) fn count(&self, vertex: u32) -> usize {
+        match self.lens[vertex as usize] {
+            POOLED => self.blocks[vertex as usize][1] as usize,
+            len => usize::from(len),
+        }
+    }
+
+    /// The words of `vertex` that hold its slots if they are few: some may be left over, or anything else if they are not.
+    #[inline]
+    pub(crate) fn few(&self, vertex: u32) -> &[u32; BLOCK] {
+        &self.blocks[vertex as usize]
+    }
+
     /// The slots of `vertex`, ascending.
     #[inline]
     pub(crate) fn of(&self, vertex: u32) -> &[u32] {
@@ -93,6 +108,32 @@ impl Slots {
             self.unused += room as usize;
         }
     }
+
+    /// Moves the slots of `parent` whose bit in `chosen` is set, the first slot's in bit 0, to `child`, whose list is empty;
+    /// both stay in order. Returns the slots moved. For a list of at most [`Slots::SHORT`] slots, and a child after the parent.
+    #[inline]
+    pub(crate) fn split_short(&mut self, parent: u32, child: u32, chosen: u32) -> &[u32] {
+        let (parent, child) = (parent as usize, child as usize);
+        let len = self.lens[parent];
+        // A parent comes before its child.
+        let (before, after) = self.blocks.split_at_mut(child);
+        let (stays, moves) = (&mut before[parent], &mut after[0]);
+        // All slots are written to both lists, so that nothing branches on what the bits are; one by one, since a processor
+        // waits where it reads as a whole what was written in parts.
+        let mut moved = 0usize;
+        for k in 0..BLOCK {
+            let slot = stays[k];
+            moves[moved & (BLOCK - 1)] = slot;
+            stays[(k - moved) & (BLOCK - 1)] = slot;
+            moved += (chosen >> k & 1) as usize;
+        }
+        self.lens[parent] = len - moved as u8;
+        self.lens[child] = moved as u8;
+        &self.blocks[child][..moved]
+    }
+
+    /// How many slots a list has that lies in a block: the most that [`Slots::split_short`] takes.
+    pub(crate) const SHORT: usize = BLOCK;
 
     /// Moves the slots of `parent` that `chosen` marks, one entry a slot, to `child`, whose list is empty; both stay in order.
     pub(crate) fn split(&mut self, parent: u32, child: u32, chosen: impl Fn(usize) -> bool) {

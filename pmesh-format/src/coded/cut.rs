@@ -4,6 +4,7 @@ use super::Fault;
 use super::models::Symbols;
 use super::priors::{COUNTS, RANKS};
 use super::rans::Coder;
+use super::ring::FEW;
 use crate::code::codes;
 
 /// Numbers of faces that have models of their own: 2 to 10 or more.
@@ -48,23 +49,18 @@ impl Cuts {
     }
 
     /// A run of some but not all of at least two faces; `None` if the split is not regular. `lengths`: those of the edges at which
-    /// each of the `count` faces begins, twice, and zeros behind them; `first`: the face with the first slot.
+    /// each of the `count` faces begins, zeros behind them; `again`: these, from the first on once more, zeros behind them.
     #[inline(always)]
     pub(super) fn code<C: Coder, const N: usize>(
         &mut self,
         coder: &mut C,
-        lengths: &[[i32; N]; 3],
+        [lengths, again]: [&[i32]; 2],
         count: usize,
-        first: usize,
         given: Option<Run>,
     ) -> Result<Option<Run>, Fault> {
         let size = count.min(SIZES + 1) - 2;
-        let (mut all, mut most) = (0, 0);
-        for k in 0..N {
-            let length = if k < count { lengths[0][k] } else { 0 };
-            all += length;
-            most = length.max(most);
-        }
+        let all: i32 = lengths.iter().sum();
+        let most = lengths.iter().fold(0, |most: i32, &length| most.max(length));
         let level = stands_out(4 * most * count as i32, [5 * all, 6 * all, 8 * all]);
         let known = given.map_or(0, |run| run.count);
         let taken = number(coder, &mut self.counts[size][level], known);
@@ -76,41 +72,41 @@ impl Cuts {
         }
         // The edges inside a run, or those at either end of a single face.
         let (from, to) = if taken == 1 { (0, 2) } else { (1, taken) };
+        let lanes = lanes::<N>(count);
         let mut weights = [0i32; N];
         for j in from..to {
-            if let Some(shifted) = lengths.as_flattened().get(j..).and_then(|all| all.first_chunk::<N>()) {
-                for k in 0..N {
+            if let Some(shifted) = again.get(j..).and_then(|all| all.first_chunk::<N>()) {
+                for k in 0..lanes {
                     weights[k] += shifted[k];
                 }
             }
         }
-        // By descending weight, equal ones by how far they are behind the first face; 0 for places without a face.
+        // By descending weight, equal ones ascending; 0 for places without a face.
         let mut keys = [0u32; N];
-        for k in 0..N {
-            let behind = if k >= first { k - first } else { k + count - first } as u32;
-            keys[k] = if k < count { ((weights[k] as u32) << 5 | (31 - (behind & 31))) + 1 } else { 0 };
+        let (mut best, mut second) = (0, 0);
+        // At most 31 × 3 × 2²⁰ × 2⁵, which fits.
+        for k in 0..lanes {
+            let key = ((weights[k] as u32) << 5) + (32 - k as u32);
+            let key = if (k as i32) < count as i32 { key } else { 0 };
+            keys[k] = key;
+            second = second.max(key.min(best));
+            best = best.max(key);
         }
-        let best = keys.iter().fold(0, |most, &key| key.max(most));
-        let second = keys.iter().fold(0, |most, &key| if key == best { most } else { key.max(most) });
-        // At most 2²⁷ × 32 × 8 would not fit.
-        let apart = u64::from(((best - 1) >> 5) - ((second - 1) >> 5)) * 8 * count as u64;
-        let level = [1, 2, 4].iter().map(|&x| usize::from(apart >= x * all as u64)).sum::<usize>();
-        let mut ranks = [0u32; N];
-        for &key in &keys {
-            for k in 0..N {
-                ranks[k] += u32::from(key > keys[k]);
-            }
-        }
-        let known = given.map_or(0, |run| ranks[run.first] as usize);
+        let weight = |key: u32| u64::from((key - 1) >> 5);
+        let apart = (weight(best) - weight(second)) * 8 * count as u64;
+        let all = all as u64;
+        let level = usize::from(apart >= all) + usize::from(apart >= 2 * all) + usize::from(apart >= 4 * all);
+        let known = given.map_or(0, |run| keys.iter().filter(|&&key| key > keys[run.first]).count());
         let found = number(coder, &mut self.ranks[taken.min(RUNS) - 1][size][level], known);
         if found >= count {
             return Err((codes::CORNER, 0));
         }
-        let mut first = 0;
-        for k in 0..N {
-            first |= if ranks[k] == found as u32 && k < count { k } else { 0 };
+        let mut key = if found == 0 { best } else { second };
+        for _ in 1..found {
+            key =
+                keys[..lanes].iter().fold(0, |most, &other| if other < key { other.max(most) } else { most });
         }
-        Ok(Some(Run { first, count: taken }))
+        Ok(Some(Run { first: 31 - ((key - 1) & 31) as usize, count: taken }))
     }
 }
 
@@ -127,4 +123,10 @@ fn number<C: Coder>(coder: &mut C, model: &mut Symbols, known: usize) -> usize {
         return LAST + coder.raw(MORE_BITS, known.wrapping_sub(LAST) as u32) as usize;
     }
     symbol
+}
+
+/// How many of `N` places are gone through for so many faces: of few always all, so that nothing depends on how many there are.
+#[inline(always)]
+fn lanes<const N: usize>(count: usize) -> usize {
+    if N == FEW { N } else { count.min(N) }
 }

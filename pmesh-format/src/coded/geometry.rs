@@ -1,5 +1,6 @@
 //! Where the next vertex is, in whole numbers: predictions, and how far from them (PMESH-COD-10).
 
+use super::Point;
 use super::models::Symbols;
 use super::priors::{HEIGHTS, SPREADS};
 use super::rans::Coder;
@@ -157,44 +158,28 @@ pub(super) struct Place {
     apart: u32,
 }
 
-/// What the neighbours of a new vertex have in sum.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Around {
-    pub(super) count: u32,
-    /// Of their cells; none of which has negative coordinates.
-    pub(super) cells: Cell,
-    /// Of their classes of height.
-    pub(super) heights: u32,
-}
-
-impl Around {
-    /// Their mean, the parent counted twice.
-    #[inline(always)]
-    pub(super) fn mean(&self, parent: Cell) -> Cell {
-        let count = self.count + 1;
-        core::array::from_fn(|k| {
-            divide(2 * u64::from((self.cells[k] + parent[k]) as u32) + u64::from(count), 2 * count) as i32
-        })
-    }
-}
-
 impl Place {
-    /// With the mean of the neighbours, the sums of how far they are from it along each axis, and the normal of the faces that
-    /// switch.
+    /// From the neighbours, the parent one of them, their sum, and the normal of the faces that switch.
     #[inline(always)]
-    pub(super) fn new(around: Around, [parent, mean]: [Cell; 2], apart: [u32; 3], normal: [i64; 3]) -> Self {
-        let count = around.count;
-        let spreads = apart.map(|apart| class(divide(8 * u64::from(apart), count) + 1));
-        let height = divide(around.heights.into(), count) as u32;
+    pub(super) fn new(neighbours: &[Point], sum: Point, parent: Cell, normal: [i64; 3]) -> Self {
+        let count = neighbours.len().max(1) as u32;
+        // Cells that are there are not negative.
+        let mean: Cell = core::array::from_fn(|k| {
+            divide(2 * u64::from((sum[k] + parent[k]) as u32) + u64::from(count + 1), 2 * count + 2) as i32
+        });
+        let mut apart = [0u32; 3];
+        for neighbour in neighbours {
+            for k in 0..3 {
+                apart[k] += neighbour[k].abs_diff(mean[k]);
+            }
+        }
+        let spreads = core::array::from_fn(|k| class(divide(8 * u64::from(apart[k]), count) + 1));
+        let height = divide((sum[3] >> 16) as u64, count) as u32;
         let apart = divide(apart.iter().map(|&x| u64::from(x)).sum(), count) as u32;
         // At most 24 bits are left of each component, so that every product below fits in 53.
         let bits = normal.iter().fold(0, |all, n| all | n.unsigned_abs()).max(1).ilog2() + 1;
         let normal = normal.map(|n| n >> bits.saturating_sub(24));
         Self { mean, spreads, normal, parent, height, apart }
-    }
-
-    pub(super) fn parent(&self) -> Cell {
-        self.parent
     }
 
     /// About how far the neighbours are from a vertex in that cell.

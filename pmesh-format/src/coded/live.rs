@@ -4,7 +4,6 @@
 use alloc::vec::Vec;
 use core::mem::swap;
 
-use super::rings::corner;
 use super::walk::Bounds;
 use super::{Changes, Fault, State};
 use crate::code::codes;
@@ -49,10 +48,8 @@ impl State {
         reserve(&mut self.histories, vertices, total);
         reserve(mesh.corners, faces, header.face_count as usize);
         reserve(mesh.parents, splits, total - self.base as usize);
-        if self.wedged.is_some() {
-            reserve(&mut self.face_ends, splits, total - self.base as usize);
-        }
-        self.rings.resize(entry.vertices.end as usize, total);
+        reserve(&mut self.face_ends, splits, total - self.base as usize);
+        self.slots.resize(entry.vertices.end as usize, total);
         let (models, packets) = (self.models.clone(), self.packets);
         let attributes = self.wedged.as_ref().map(|wedged| wedged.models());
         let mut changes = Changes { recorded: self.wedged.is_some(), ..Changes::default() };
@@ -71,11 +68,8 @@ impl State {
         self.exchange(&mut mesh);
         read?;
         // Corners only ever switch to later vertices: those that have switched are now at vertices of this packet.
-        let earlier = 4 * entry.faces.start;
-        let slots = |vertex: u32| {
-            let slots = self.rings.list(vertex).iter().filter(move |&&slot| slot < earlier);
-            slots.map(|&slot| corner(slot) as u32)
-        };
+        let earlier = 3 * entry.faces.start;
+        let slots = |vertex: u32| self.slots.of(vertex).iter().copied().filter(|&slot| slot < earlier);
         mesh.switched.extend(entry.vertices.clone().flat_map(slots));
         if let Some(wedged) = &self.wedged {
             wedged.append(header, entry, &mut mesh);

@@ -46,6 +46,12 @@ impl Points {
         if self.is_wide { self.with_highs(point, vertex) } else { point }
     }
 
+    /// Anything that stands where a point does.
+    #[inline(always)]
+    pub(super) fn touch(&self, vertex: u32) -> u32 {
+        self.lows.get(vertex as usize).map_or(0, |point| point[0].into())
+    }
+
     #[inline]
     fn with_highs(&self, [x, y, z, shape]: Point, vertex: u32) -> Point {
         let high = i32::from(self.highs[vertex as usize]);

@@ -103,7 +103,7 @@ impl Coder for Writer {
     fn raw_long(&mut self, bits: u32, value: u64) -> u64 {
         let value = value & low_bits(bits);
         for k in 0..bits {
-            if self.bits % 8 == 0 {
+            if self.bits.is_multiple_of(8) {
                 self.raw.push(0);
             }
             if let Some(byte) = self.raw.last_mut() {

@@ -3,7 +3,7 @@
 /// The most faces that are put in order.
 pub(super) const MOST: usize = 32;
 
-/// So many faces have a faster way: a power of two.
+/// So many faces have a faster way: a power of two, and as many as [`Slots::SHORT`](crate::slots::Slots::SHORT).
 pub(super) const FEW: usize = 8;
 
 /// A face at a vertex: the vertices that follow it in the face.
@@ -43,6 +43,34 @@ pub(super) fn order(spokes: &mut [Spoke; MOST], count: usize) -> bool {
     }
     *spokes = ordered;
     true
+}
+
+/// Places in a table of faces by the lowest bits of their outs: a power of two.
+const TABLE: usize = 128;
+
+/// Whether up to [`FEW`] faces go round once; where each is then among those given, in order, four bits each. Behind the last
+/// one `outs` has numbers that no vertex has. `None` is no answer: each face knows one that follows it, but not the one.
+#[inline(always)]
+pub(super) fn round_few(outs: &[u32; FEW], backs: &[u32; FEW], count: usize) -> Option<u32> {
+    let mut table = [0u8; TABLE];
+    // The first of those with the same out, or the same lowest bits, comes last and stays.
+    for (k, &out) in outs.iter().enumerate().rev() {
+        table[out as usize % TABLE] = k as u8;
+    }
+    let (mut order, mut at, mut seen) = (0, 0, 1u32);
+    for k in 1..count {
+        let back = backs[at & (FEW - 1)];
+        at = usize::from(table[back as usize % TABLE]) & (FEW - 1);
+        if outs[at] != back {
+            at = outs.iter().position(|&out| out == back)?;
+        }
+        if seen >> at & 1 == 1 {
+            return None;
+        }
+        seen |= 1 << at;
+        order |= (at as u32) << (4 * k);
+    }
+    (count >= 2 && backs[at & (FEW - 1)] == outs[0]).then_some(order)
 }
 
 /// Where faces do not go round: first those fans that have a beginning, by the place of their first face, then what is left.

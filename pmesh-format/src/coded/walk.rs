@@ -15,6 +15,9 @@ use crate::storage::Positions;
 /// Vertices whose parents are found at a time (PMESH-COD-07): a power of two.
 const BATCH: usize = 64;
 
+/// How many splits ahead what they need is fetched.
+const AHEAD: usize = 2;
+
 /// What a writer knows; the reader's knows nothing, and nobody looks at what it says.
 pub(super) trait Source: Copy {
     /// Whether it is a writer's.
@@ -106,7 +109,7 @@ impl State {
             changes.masks.reserve(splits);
             changes.introduced.reserve(extent.faces.len());
         }
-        self.rings.resize(end as usize, usize::MAX);
+        self.slots.resize(end as usize, usize::MAX);
         if extent.vertices.start < self.base {
             self.code_base(coder, source, extent, bounds, changes)?;
         }
@@ -132,7 +135,10 @@ impl State {
             if found == 0 {
                 return Err((codes::PARENT, 0));
             }
-            for &parent in &parents[..found] {
+            for (k, &parent) in parents[..found].iter().enumerate() {
+                if let Some(&later) = parents[..found].get(k + AHEAD) {
+                    self.touch(later);
+                }
                 let step = Step { source, extent, bounds: &bounds, vertex, parent };
                 self.code_split(coder, step, changes)?;
                 if coder.failed() {
@@ -148,6 +154,17 @@ impl State {
         Ok(())
     }
 
+    /// Looks at what a split of that vertex will look at, so that it is near by then.
+    #[inline(always)]
+    fn touch(&self, parent: u32) {
+        let mut all = 0;
+        for &slot in self.slots.few(parent) {
+            let [a, b, c] = self.corners.get(slot as usize / 3).copied().unwrap_or_default();
+            all |= self.points.touch(a) ^ self.points.touch(b) ^ self.points.touch(c);
+        }
+        core::hint::black_box(all);
+    }
+
     /// Which model tells whether a vertex is split (once more).
     #[inline(always)]
     fn parent_context(&self, parent: u32, times: usize) -> usize {
@@ -158,7 +175,7 @@ impl State {
             0 => 4 + usize::from(packets > 1),
             _ => 5 + times,
         };
-        let faces = self.rings.about(parent).clamp(3, 11) - 3;
+        let faces = self.slots.count(parent).clamp(3, 11) - 3;
         (history * 9 + faces) * 16 + usize::from(scale)
     }
 
@@ -211,11 +228,11 @@ impl State {
         Ok(())
     }
 
+    #[inline(always)]
     pub(super) fn introduce(&mut self, corners: [u32; 3], changes: &mut Changes) {
         let face = self.corners.len() as u32;
-        for (slot, corner) in (4 * face..).zip(corners) {
-            self.rings.loosen(corner);
-            self.rings.push(corner, slot);
+        for (slot, corner) in (3 * face..).zip(corners) {
+            self.slots.push(corner, slot);
         }
         self.corners.push(corners);
         if changes.recorded {

@@ -51,7 +51,13 @@ quickcheck! {
                     }
                     let parent = numbers.below(child);
                     let chosen: Vec<bool> = lists[parent].iter().map(|_| numbers.below(2) == 0).collect();
-                    slots.split(parent as u32, child as u32, |k| chosen[k]);
+                    if chosen.len() <= Slots::SHORT {
+                        let bits = (0..).zip(&chosen).map(|(k, &chosen)| u32::from(chosen) << k).sum();
+                        let moved = slots.split_short(parent as u32, child as u32, bits).len();
+                        assert_eq!(moved, chosen.iter().filter(|&&chosen| chosen).count());
+                    } else {
+                        slots.split(parent as u32, child as u32, |k| chosen[k]);
+                    }
                     let all = core::mem::take(&mut lists[parent]);
                     for (slot, chosen) in all.into_iter().zip(chosen) {
                         lists[if chosen { child } else { parent }].insert(slot);
