@@ -38,8 +38,9 @@
 //! ```
 //!
 //! Guarantees: reading never panics, whatever the bytes; [`Decoder`] allocates nothing but the directory; [`Replay`] holds at
-//! most 64 bytes for each byte received (PMESH-LIM-03), for meshes that are no attack three to four; a declared count never makes anything allocate; any split of the bytes
-//! gives the same events and the same error; a packet that breaks a rule leaves the levels before it as they were.
+//! most 64 bytes for each byte received (PMESH-LIM-03), about 1.6 of an ordinary mesh that has been stepped through; a declared
+//! count never makes anything allocate; any split of the bytes gives the same events and the same error; a packet that breaks a
+//! rule leaves the levels before it as they were. [`Replay::from_file`] reads a whole file at once.
 //! [`decode_packet`] reads one packet by its range, [`Header::packet_range`] says where it lies.
 //!
 //! Features: `std` (default) is only passed on to dependencies; it never changes bytes or results.
