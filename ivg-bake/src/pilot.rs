@@ -23,6 +23,10 @@ const PHOTONS_SHARE: u64 = 100;
 /// The fewest photons a pilot traces: enough for energies after each reflection to a few per cent.
 const FEWEST_PHOTONS: u64 = 2_000;
 
+/// Share of the cutoff that a pilot leaves to the flights that are cut: it knows their energy from a hundredth of the photons, and
+/// some flights pass more of the grid than others.
+const CUTOFF_SHARE: f64 = 0.5;
+
 /// Reflections followed by a pilot, and the most it puts into a plan.
 const MOST_BOUNCES: u32 = BOOKED_BOUNCES as u32 - 1;
 
@@ -64,7 +68,7 @@ impl PilotReport {
 /// flight that belongs to it (of textures, mirrors and glass: by how much they change the reflected energy).
 ///
 /// Reflections: the fewest after which the energy still to be reflected, summed over all further flights, is at most
-/// `plan.energy_cutoff` of the emitted energy; at most 63.
+/// half of `plan.energy_cutoff` of the emitted and of the reflected energy; at most 63.
 ///
 /// # Errors
 ///
@@ -91,7 +95,7 @@ pub fn pilot(
     let emitted = books.after_bounces[0].max(1) as f64;
     let energy_after_bounces: Vec<f64> = books.after_bounces.iter().map(|&e| e as f64 / emitted).collect();
     if plan.needs(Effect::DiffuseIndirect) {
-        plan.max_bounces = bounces_worth_following(&energy_after_bounces, plan.energy_cutoff);
+        plan.max_bounces = bounces_worth_following(&energy_after_bounces, CUTOFF_SHARE * plan.energy_cutoff);
     }
 
     let scale = options.photons as f64 / photons as f64;
@@ -154,8 +158,11 @@ pub fn pilot(
     Ok(report)
 }
 
-/// The fewest reflections that leave at most `cutoff` of the emitted energy in all flights beyond.
+/// The fewest reflections that leave at most `cutoff` of the emitted energy in all flights beyond, and of the reflected energy
+/// where that is less: in a dark room the grid holds little, and what is cut is a greater share of it.
 fn bounces_worth_following(energy_after_bounces: &[f64], cutoff: f64) -> u32 {
+    let reflected: f64 = energy_after_bounces.iter().skip(1).sum();
+    let cutoff = cutoff * reflected.min(1.0);
     let mut beyond = 0.0;
     let mut bounces = energy_after_bounces.len().saturating_sub(1);
     while bounces > 1 && beyond + energy_after_bounces[bounces] <= cutoff {

@@ -6,6 +6,9 @@ use super::{
 };
 use crate::Estimator;
 
+mod effects;
+mod hard;
+
 #[track_caller]
 fn check(outcome: &Outcome, sharp: f64) {
     assert!(outcome.holds(), "{outcome:?}");
