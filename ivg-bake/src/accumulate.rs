@@ -35,7 +35,7 @@ impl Sums for Private {
     fn add<const N: usize>(&mut self, first: usize, quanta: &[f32; N]) {
         let sums = &mut self.0[first..][..N];
         for (sum, &number) in sums.iter_mut().zip(quanta) {
-            *sum += round(number);
+            *sum = sum.wrapping_add(round(number));
         }
     }
 }
@@ -79,6 +79,20 @@ impl Store {
         }
     }
 
+    /// Adds sums of photons traced before.
+    pub(crate) fn add(&mut self, sums: Vec<i64>) {
+        match self {
+            Self::Private { sets, .. } => {
+                sets.get_mut().unwrap_or_else(PoisonError::into_inner).push(Private(sums));
+            }
+            Self::Shared(all) => {
+                all.iter_mut()
+                    .zip(sums)
+                    .for_each(|(sum, part)| *sum.get_mut() = sum.get_mut().wrapping_add(part));
+            }
+        }
+    }
+
     /// `len` sums that all threads share.
     pub(crate) fn shared(len: usize) -> Self {
         Self::Shared((0..len).map(|_| AtomicI64::new(0)).collect())
@@ -117,7 +131,7 @@ impl Store {
                 let mut sets = sets.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter();
                 let mut total = sets.next().map_or_else(|| vec![0; len], |set| set.0);
                 for set in sets {
-                    total.iter_mut().zip(&set.0).for_each(|(sum, part)| *sum += part);
+                    total.iter_mut().zip(&set.0).for_each(|(sum, part)| *sum = sum.wrapping_add(*part));
                 }
                 total
             }
@@ -151,9 +165,10 @@ impl<'a> Total<'a> {
     pub(crate) fn get<const N: usize>(&self, first: usize) -> [i64; N] {
         match self {
             Self::Sets(sets) => {
-                let mut sums = [0; N];
+                let mut sums = [0i64; N];
                 for set in sets {
-                    sums.iter_mut().zip(&set[first..][..N]).for_each(|(sum, part)| *sum += part);
+                    let part = set[first..][..N].iter();
+                    sums.iter_mut().zip(part).for_each(|(sum, part)| *sum = sum.wrapping_add(*part));
                 }
                 sums
             }

@@ -34,9 +34,6 @@ pub enum EndedBy {
     Photons,
     /// The [`Monitor`](crate::Monitor) had enough, as when a time is up.
     Monitor,
-    /// More photons would not help: the bias of averaging over cells, or of the reflections followed, is as large as the
-    /// whole error asked for.
-    Bias,
 }
 
 impl EndedBy {
@@ -47,7 +44,6 @@ impl EndedBy {
             Self::Accuracy => "accuracy",
             Self::Photons => "photons",
             Self::Monitor => "time",
-            Self::Bias => "bias",
         }
     }
 }
@@ -77,8 +73,8 @@ pub struct AccuracyReport {
     pub vertices: usize,
     /// Vertices at which light was gathered to find the bias.
     pub probes: usize,
-    /// Vertices next to geometry that hold gathered light, because averaging over their cells is too biased.
-    pub gathered_near_surfaces: usize,
+    /// Vertices that hold gathered light because averaging over their cells is too biased, most of them next to geometry.
+    pub gathered_biased: usize,
     /// Vertices that hold gathered light because photons left them too noisy, measured by their own brightness.
     pub gathered_noisy: usize,
     /// Vertices that are too noisy still, since the bake had to end.

@@ -3,7 +3,6 @@ use ivg_format::Quantity;
 use ivg_grid::{GridValues, IrradianceGrid};
 use ivg_scene::{EffectPlan, FlatScene, Scene};
 
-use crate::accumulate::Total;
 use crate::accuracy::{self, AccuracyReport, Simulated, gathering};
 use crate::dual::Boxes;
 use crate::estimate::Estimate;
@@ -152,9 +151,6 @@ impl Job<'_> {
     }
 }
 
-/// Photons between two questions whether there are enough: so many, then an eighth of those traced.
-const PHOTONS_A_STRETCH: u64 = 1 << 16;
-
 /// Traces the photons of a job, all or until the monitor has enough.
 fn all_photons<E: Estimate<Value: Held>>(job: &Job<'_>, estimate: &E) -> Result<Simulated, BakeError>
 where
@@ -164,15 +160,13 @@ where
     let mut tally = Tally::new(&job.tracer, estimate, job.workers.threads);
     let mut next = 0;
     while next < job.photons && (next == 0 || !job.workers.monitor.enough()) {
-        let last = (next + PHOTONS_A_STRETCH.max(next / 8)).min(job.photons);
+        let last = tally::stretch(next, job.photons, 1);
         tally.trace(Photons::all(next, last), &job.workers)?;
         next = last;
     }
     let Traced { sums, books, photons } = tally.finish();
     let power = job.power() / photons as f64;
-    let total = Total::of(&sums);
-    let vertices = 0..job.ready.cells.len();
-    let values: Vec<E::Value> = vertices.map(|vertex| estimate.value(&total, vertex, power)).collect();
+    let values = estimate.values(sums, job.ready.cells.len(), power);
     Ok(Simulated { values: values.into(), books, photons, paths: 0, accuracy: None })
 }
 
@@ -235,7 +229,7 @@ impl<'a> Chosen<'a> {
 }
 
 /// The lights of a scene: emissive materials in use, lights without a surface, the sky.
-fn lights(scene: &Scene, flat: &FlatScene, effects: Effects) -> Vec<BakedLight> {
+pub(crate) fn lights(scene: &Scene, flat: &FlatScene, effects: Effects) -> Vec<BakedLight> {
     let mut used = vec![false; scene.materials.len()];
     flat.triangle_materials.iter().for_each(|&material| used[material as usize] = true);
     let emissive =

@@ -1,7 +1,7 @@
 use ivg_format::LatticeError;
 use ivg_grid::GridError;
 
-use crate::Estimator;
+use crate::{AccumulatorError, Estimator};
 
 /// Why a scene cannot be baked.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -29,6 +29,12 @@ pub enum BakeError {
         /// The relative error asked for.
         asked: f64,
     },
+    /// What accumulators do not hold.
+    #[error("only bakes by photons with the estimator {} can be divided or resumed, without an accuracy", Estimator::TrackLength.name())]
+    NotAccumulated,
+    /// An accumulator that cannot be used here.
+    #[error(transparent)]
+    Accumulator(#[from] AccumulatorError),
     /// More photons than the sums are proven to hold.
     #[error("{photons} photons with up to {bounces} reflections could overflow the sums; at most {most} fit")]
     TooManyPhotons {

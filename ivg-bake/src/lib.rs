@@ -75,12 +75,13 @@
 //!
 //! # Features
 //!
-//! `cases` adds the module `cases`: the hard cases as functions; it changes no result.
+//! `cases` adds the module `cases`: the hard cases as functions; `fuzz` adds what fuzz targets call. Neither changes a result.
 
 #![forbid(unsafe_code)]
 
 mod accel;
 mod accumulate;
+mod accumulator;
 mod accuracy;
 mod bake;
 #[cfg(any(test, feature = "cases"))]
@@ -98,6 +99,7 @@ mod pilot;
 mod ready;
 pub mod reference;
 mod region;
+mod resolution;
 mod sampling;
 mod space;
 mod stage;
@@ -107,9 +109,13 @@ mod trace;
 mod validity;
 mod workers;
 
+#[cfg(any(test, feature = "fuzz"))]
+pub use accumulator::fuzz_accumulator;
+pub use accumulator::{Accumulator, AccumulatorError, Shard, accumulate};
 pub use accuracy::{AccuracyReport, CONFIDENCE, EndedBy};
 pub use bake::{BakeResult, BakeStats, BakedLight, bake};
 pub use error::BakeError;
 pub use monitor::{BakeStage, Monitor, Silent};
 pub use options::{BakeOptions, Estimator, automatic_bounds, dims_for};
 pub use pilot::{PilotReport, pilot};
+pub use resolution::{Resolution, resolution};

@@ -12,6 +12,16 @@ use crate::workers::Workers;
 /// Photons that a thread takes at a time, and the pieces that shards are dealt.
 pub(crate) const PHOTONS_A_PIECE: u64 = 2048;
 
+/// Photons between two questions whether there are enough: so many, then an eighth of those traced, in whole pieces.
+const PHOTONS_A_STRETCH: u64 = 32 * PHOTONS_A_PIECE;
+
+/// The end of the stretch of photons that begins at `first`, of `last` in all, for each of `shards`.
+pub(crate) fn stretch(first: u64, last: u64, shards: u64) -> u64 {
+    let longer = first / 8 / PHOTONS_A_PIECE * PHOTONS_A_PIECE;
+    let photons = PHOTONS_A_STRETCH.saturating_mul(shards).max(longer);
+    first.saturating_add(photons).min(last)
+}
+
 /// Some of the photons of a bake: of every `of` pieces in turn, counted from photon 0, the one numbered `share`, as far as it
 /// lies in `first..last`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +68,19 @@ impl<'a, E: Estimate> Tally<'a, E> {
     pub(crate) fn new(tracer: &'a Tracer<'a>, estimate: &'a E, threads: usize) -> Self {
         let store = Store::new(estimate.sums(), threads);
         Self { tracer, estimate, store, books: Books::default(), photons: 0 }
+    }
+
+    /// Goes on from sums and books of photons traced before.
+    pub(crate) fn resume(&mut self, sums: Vec<i64>, books: Books) {
+        self.store.add(sums);
+        self.books = books;
+    }
+
+    /// Sums and books as they are now.
+    pub(crate) fn copy(&mut self) -> (Vec<i64>, Books) {
+        let len = self.estimate.sums();
+        let total = self.store.total();
+        ((0..len).map(|n| total.get::<1>(n)[0]).collect(), self.books.clone())
     }
 
     /// Photons traced.

@@ -89,7 +89,7 @@ fn report(gathers: &[VertexGather], asked: f64, aim: f64, stopped: bool, paths: 
         looks: 1,
         vertices: gathers.len(),
         probes: 0,
-        gathered_near_surfaces: 0,
+        gathered_biased: 0,
         gathered_noisy: 0,
         noisy: rough,
         paths,

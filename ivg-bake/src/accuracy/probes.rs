@@ -29,7 +29,7 @@ struct Stratum {
     vertices: Vec<usize>,
     /// How many of them have been gathered.
     gathered: usize,
-    /// Whether its vertices still hold what photons brought.
+    /// Whether its vertices hold what photons brought.
     counts: bool,
 }
 
@@ -121,14 +121,38 @@ impl Probes {
         Ok(())
     }
 
-    /// Takes note that touched vertices hold gathered light now.
-    pub(crate) fn touched_are_gathered(&mut self) {
-        self.strata[CLASSES.len()..].iter_mut().for_each(|stratum| stratum.counts = false);
+    /// The vertices of the stratum with the largest mean squared bias, which no longer counts from now on; `None` if none
+    /// counts. Arguments as of [`Probes::bias`].
+    pub(crate) fn take_worst(
+        &mut self,
+        baked: impl Fn(usize) -> Axes,
+        variance: impl Fn(usize) -> f64,
+    ) -> Option<Vec<usize>> {
+        let counting = (0..STRATA).filter(|&n| self.strata[n].counts && self.strata[n].gathered > 0);
+        let mean = |number: usize| {
+            let squares = self.squares(number, &baked, &variance);
+            squares.iter().sum::<f64>() / squares.len() as f64
+        };
+        let (worst, _) = counting.map(|n| (n, mean(n))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let stratum = &mut self.strata[worst];
+        stratum.counts = false;
+        Some(stratum.vertices.clone())
     }
 
-    /// Whether they do.
-    pub(crate) fn touched_hold_gathered(&self) -> bool {
-        self.strata[CLASSES.len()..].iter().all(|stratum| !stratum.counts)
+    /// Squared biases at the probes of a stratum.
+    fn squares(
+        &self,
+        stratum: usize,
+        baked: &impl Fn(usize) -> Axes,
+        variance: &impl Fn(usize) -> f64,
+    ) -> Vec<f64> {
+        let probes = self.probes.iter().filter(|probe| probe.stratum == stratum);
+        let square = |probe: &Probe| {
+            let axes = baked(probe.vertex).map(f64::from);
+            let difference: f64 = axes.iter().zip(&probe.axes).map(|(a, b)| (a - b).powi(2)).sum();
+            difference - probe.variance - variance(probe.vertex)
+        };
+        probes.map(square).collect()
     }
 
     /// Vertices gathered at.
@@ -147,30 +171,13 @@ impl Probes {
     }
 
     /// The squared bias: `baked` is what a vertex holds along the axes \[W/m²\], `variance` the sum of its variances.
-    /// `only_touched` counts nothing else.
-    pub(crate) fn bias(
-        &self,
-        baked: impl Fn(usize) -> Axes,
-        variance: impl Fn(usize) -> f64,
-        only_touched: bool,
-    ) -> Bias {
+    pub(crate) fn bias(&self, baked: impl Fn(usize) -> Axes, variance: impl Fn(usize) -> f64) -> Bias {
         let mut bias = Bias { squared: 0.0, standard_error: 0.0, freedom: 0.0 };
         for (number, stratum) in self.strata.iter().enumerate() {
-            let touched = number >= CLASSES.len();
-            if !stratum.counts || stratum.gathered == 0 || (only_touched && !touched) {
+            if !stratum.counts || stratum.gathered == 0 {
                 continue;
             }
-            let squares: Vec<f64> = self
-                .probes
-                .iter()
-                .filter(|probe| probe.stratum == number)
-                .map(|probe| {
-                    let baked_axes = baked(probe.vertex).map(f64::from);
-                    let difference: f64 =
-                        baked_axes.iter().zip(&probe.axes).map(|(a, b)| (a - b).powi(2)).sum();
-                    difference - probe.variance - variance(probe.vertex)
-                })
-                .collect();
+            let squares = self.squares(number, &baked, &variance);
             let (all, count) = (stratum.vertices.len() as f64, squares.len() as f64);
             let mean = squares.iter().sum::<f64>() / count;
             bias.squared += all * mean;

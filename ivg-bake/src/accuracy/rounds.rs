@@ -5,8 +5,8 @@
 //! probability α / k(k + 1), so that stopping at the first look that is good enough does not spoil the confidence.
 //!
 //! Then come the vertices that are noisy measured by their own brightness, which the grid as a whole does not show: a dim
-//! room beside a bright one. They are gathered by path tracing; so are the vertices next to geometry, if their bias
-//! alone is too large.
+//! room beside a bright one. They are gathered by path tracing; so are, stratum by stratum, the vertices with most bias,
+//! as long as what is left of it is too much.
 
 use std::collections::BTreeMap;
 
@@ -45,7 +45,7 @@ const PROBE_PATHS: u32 = 1 << 15;
 const MOST_PATHS: u32 = 1 << 17;
 
 /// Share of the squared error asked for that bias may take before something else than photons is tried.
-const MOST_BIAS: f64 = 0.7;
+const MOST_BIAS: f64 = 0.5;
 
 /// A vertex is too noisy beyond so many times the error asked for, relative to its own brightness.
 const VERTEX_NOISE: f64 = 4.0;
@@ -53,8 +53,8 @@ const VERTEX_NOISE: f64 = 4.0;
 /// Brightness of a vertex counts as at least this share of the grid's root mean square.
 const DIMMEST: f64 = 0.01;
 
-/// Share of the squared error asked for, less the bias of other vertices, that those gathered next to geometry may add.
-const GATHERED_NOISE: f64 = 0.4;
+/// Share of the squared error asked for that the vertices of a stratum may add when they are gathered.
+const GATHERED_NOISE: f64 = 0.12;
 
 /// Vertices gathered between two questions whether the time is up.
 const BLOCK: usize = 256;
@@ -73,7 +73,7 @@ where
         noise: Noise::new(vertices),
         probes: None,
         gathered: BTreeMap::new(),
-        touched: 0,
+        biased: 0,
         looks: 0,
     };
     let (ended_by, look) = rounds.until_good()?;
@@ -88,8 +88,8 @@ struct Rounds<'a, E> {
     probes: Option<Probes>,
     /// Vertices that are to hold gathered light.
     gathered: BTreeMap<usize, VertexGather>,
-    /// How many of them lie next to geometry.
-    touched: usize,
+    /// How many of them would be too biased otherwise.
+    biased: usize,
     looks: u32,
 }
 
@@ -140,13 +140,11 @@ where
             }
             let allowed = self.asked.powi(2) * look.signal;
             while self.probes.is_some() && look.bias_bound > MOST_BIAS * allowed && !last {
-                let uncertain = look.bias < 0.5 * allowed;
+                let uncertain = look.bias < 0.5 * MOST_BIAS * allowed;
                 if uncertain && self.probes.as_ref().is_some_and(|p| p.can_grow() && p.len() < PROBES.1) {
                     let more = self.probes.as_ref().map_or(0, Probes::len);
                     self.probe(more, &look)?;
-                } else if !self.touched_hold_gathered() && self.touched_help(&look)? {
-                    self.gather_touched(&look)?;
-                } else {
+                } else if !self.gather_worst(&look)? {
                     break;
                 }
                 look = self.look_again()?;
@@ -156,7 +154,6 @@ where
                 (true, ..) => Some(EndedBy::Accuracy),
                 (_, true, _) => Some(EndedBy::Monitor),
                 (_, _, true) => Some(EndedBy::Photons),
-                _ if self.probes.is_some() && look.bias >= allowed => Some(EndedBy::Bias),
                 _ => None,
             };
             if let Some(ended) = ended {
@@ -237,7 +234,7 @@ where
         let noise = self.noise.variance() * factor + of_gathered;
         let noise_bound = self.noise.bound(0.5 * beyond(self.looks)) * factor + of_gathered;
         let signal = (energies.iter().sum::<f64>() - self.noise.variance() * unit * photons).max(0.0);
-        let bias = self.bias(false)?;
+        let bias = self.bias();
         Ok(Look {
             signal,
             noise,
@@ -282,32 +279,26 @@ where
         Ok(Probes::new(job.counted(), job.seed(), touched, |vertex| changes[vertex]))
     }
 
-    fn touched_hold_gathered(&self) -> bool {
-        self.probes.as_ref().is_some_and(Probes::touched_hold_gathered)
-    }
-
-    /// Whether gathering at the vertices next to geometry would leave little enough bias.
-    fn touched_help(&mut self, look: &Look) -> Result<bool, BakeError> {
-        let of_touched = self.bias(true)?.map_or(0.0, |bias| bias.squared);
-        Ok(look.bias - of_touched < MOST_BIAS * self.asked.powi(2) * look.signal)
-    }
-
-    fn gather_touched(&mut self, look: &Look) -> Result<(), BakeError> {
-        let job = self.job;
-        let touched: Vec<usize> =
-            job.counted().filter(|&vertex| job.surroundings.is_touched(vertex)).collect();
-        let of_touched = self.bias(true)?.map_or(0.0, |bias| bias.squared.max(0.0));
-        let allowed = self.asked.powi(2) * look.signal - (look.bias - of_touched).max(0.0);
-        let variance = GATHERED_NOISE * allowed / touched.len().max(1) as f64;
+    /// Gathers at the vertices where averaging over cells is most biased; says whether there were any.
+    fn gather_worst(&mut self, look: &Look) -> Result<bool, BakeError> {
+        let photons = self.tally.photons() as f64;
+        let (unit, power) = (self.unit(), self.job.power() / photons);
+        let estimate = self.tally.estimate;
+        let total = self.tally.total();
+        let noise = &self.noise;
+        let worst = self.probes.as_mut().and_then(|probes| {
+            probes.take_worst(
+                |vertex| estimate.value(&total, vertex, power).axes(),
+                |vertex| noise.of_vertex(vertex) * unit * photons,
+            )
+        });
+        let Some(vertices) = worst else { return Ok(false) };
+        let variance = GATHERED_NOISE * self.asked.powi(2) * look.signal / vertices.len().max(1) as f64;
         let enough = Enough::Variance { variance, most: MOST_PATHS };
-        let wanted: Vec<_> = touched.iter().map(|&vertex| (vertex, enough)).collect();
-        self.touched = self.gather(&wanted)?;
-        if self.touched == touched.len()
-            && let Some(probes) = &mut self.probes
-        {
-            probes.touched_are_gathered();
-        }
-        Ok(())
+        let wanted: Vec<_> = vertices.into_iter().map(|vertex| (vertex, enough)).collect();
+        let done = self.gather(&wanted)?;
+        self.biased += done;
+        Ok(done == wanted.len())
     }
 
     /// Gathers light at vertices into the grid until there are no more of them or the monitor has enough; says how many.
@@ -354,7 +345,7 @@ where
     /// Gathers what is too noisy, and makes the grid and the report.
     fn finish(mut self, ended_by: EndedBy, look: Look) -> Result<Simulated, BakeError> {
         let noisy = self.noisy(&look)?;
-        let converged = matches!(ended_by, EndedBy::Accuracy | EndedBy::Bias);
+        let converged = ended_by == EndedBy::Accuracy;
         let gathered_noisy = if converged && !noisy.is_empty() { self.gather(&noisy)? } else { 0 };
         let look = self.look_again()?;
         let probes = self.probes.as_ref();
@@ -369,7 +360,7 @@ where
             looks: self.looks,
             vertices: self.job.counted().count(),
             probes: probes.map_or(0, Probes::len),
-            gathered_near_surfaces: self.touched,
+            gathered_biased: self.biased,
             gathered_noisy,
             noisy: noisy.len() - gathered_noisy,
             paths: into_grid + probes.map_or(0, Probes::paths),
@@ -378,9 +369,7 @@ where
         let estimate = self.tally.estimate;
         let traced = self.tally.finish();
         let power = self.job.power() / traced.photons as f64;
-        let total = crate::accumulate::Total::of(&traced.sums);
-        let mut values: Vec<E::Value> =
-            (0..self.job.ready.cells.len()).map(|vertex| estimate.value(&total, vertex, power)).collect();
+        let mut values = estimate.values(traced.sums, self.job.ready.cells.len(), power);
         for (vertex, gather) in &self.gathered {
             values[*vertex] = E::Value::gathered(&gather.numbers);
         }
@@ -393,16 +382,15 @@ where
         })
     }
 
-    fn bias(&mut self, only_touched: bool) -> Result<Option<Bias>, BakeError> {
-        let Some(probes) = &self.probes else { return Ok(None) };
+    fn bias(&mut self) -> Option<Bias> {
+        let probes = self.probes.as_ref()?;
         let photons = self.tally.photons() as f64;
-        let (unit, power) = (self.unit(), self.job.power() / photons);
+        let (unit, power) = ((self.job.power() / photons).powi(2), self.job.power() / photons);
         let estimate = self.tally.estimate;
         let total = self.tally.total();
-        Ok(Some(probes.bias(
+        Some(probes.bias(
             |vertex| estimate.value(&total, vertex, power).axes(),
             |vertex| self.noise.of_vertex(vertex) * unit * photons,
-            only_touched,
-        )))
+        ))
     }
 }

@@ -46,6 +46,12 @@ pub(crate) trait Estimate: Sync {
     /// Deposits a flight.
     fn deposit(&self, flight: &Flight, sums: &mut impl Sums);
 
+    /// The values of all `vertices` from the sums of a finished bake; `power` as below.
+    fn values(&self, sums: Vec<i64>, vertices: usize, power: f64) -> Vec<Self::Value> {
+        let total = Total::of(&sums);
+        (0..vertices).map(|vertex| self.value(&total, vertex, power)).collect()
+    }
+
     /// The value of a vertex from all sums; `power` is what a photon of share 1 carries \[W\], lengths are in bake units.
     fn value(&self, sums: &Total<'_>, vertex: usize, power: f64) -> Self::Value;
 }

@@ -6,7 +6,7 @@
 //! radiance ([`RadianceTracks`]). No cosine is divided by, so that grazing flights do no harm, and every flight counts in
 //! every region that it passes.
 
-use ivg_format::{HemisphereVectors, RadianceHarmonics};
+use ivg_format::{HemisphereVectors, Quantity, RadianceHarmonics};
 use ivg_grid::harmonics::{COEFFICIENTS, basis};
 
 use super::{Estimate, Flight, NUMBERS};
@@ -32,8 +32,7 @@ struct Tracks<'a> {
 
 impl<'a> Tracks<'a> {
     fn new(cells: Boxes, regions: &'a Regions) -> Self {
-        let exponent = libm::ilogbf(cells.diagonal() * DIAGONAL_MARGIN) + 1;
-        Self { cells, regions, quantum: libm::scalbn(1.0, exponent) / f64::from(MAX_QUANTA) }
+        Self { cells, regions, quantum: quantum(&cells) }
     }
 
     /// Calls `add` with the vertex and the length \[bake units\] of each stretch of a flight that counts.
@@ -63,6 +62,20 @@ impl<'a> Tracks<'a> {
     fn scale(&self, vertex: usize, power: f64) -> Option<f64> {
         let share = self.regions.get(vertex).share();
         (share > 0.0).then(|| power * self.quantum / (self.cells.volume() * share))
+    }
+}
+
+/// Bake units a quantum: a power of two.
+pub(crate) fn quantum(cells: &Boxes) -> f64 {
+    let exponent = libm::ilogbf(cells.diagonal() * DIAGONAL_MARGIN) + 1;
+    libm::scalbn(1.0, exponent) / f64::from(MAX_QUANTA)
+}
+
+/// Sums of a grid of `vertices` vertices.
+pub(crate) fn sums_of(quantity: Quantity, vertices: usize) -> usize {
+    match quantity {
+        Quantity::Vectors => vertices * OCTANTS * NUMBERS,
+        Quantity::Radiance => vertices * RADIANCE_NUMBERS,
     }
 }
 
@@ -102,6 +115,36 @@ impl Estimate for VectorTracks<'_> {
         });
     }
 
+    /// The vectors of a vertex take as much memory as its sums of three octants, and are put in their place: the vectors of a
+    /// large grid beside all its sums would be more than either.
+    fn values(&self, mut sums: Vec<i64>, vertices: usize, power: f64) -> Vec<HemisphereVectors> {
+        const KEPT: usize = 3;
+        for vertex in 0..vertices {
+            let vectors = self.value(&Total::of(&sums), vertex, power);
+            let mut numbers = vectors.as_flattened().as_flattened().chunks_exact(2);
+            for octant in 0..KEPT {
+                for sum in &mut sums[(octant * vertices + vertex) * NUMBERS..][..NUMBERS] {
+                    if let Some([low, high]) = numbers.next() {
+                        *sum = (u64::from(high.to_bits()) << 32 | u64::from(low.to_bits())) as i64;
+                    }
+                }
+            }
+        }
+        sums.truncate(KEPT * vertices * NUMBERS);
+        sums.shrink_to_fit();
+        let vectors = |vertex: usize| -> HemisphereVectors {
+            let halves: [f32; 2 * KEPT * NUMBERS] = core::array::from_fn(|n| {
+                let (octant, at) = (n / 2 / NUMBERS, n / 2 % NUMBERS);
+                let both = sums[(octant * vertices + vertex) * NUMBERS + at] as u64;
+                f32::from_bits((both >> (32 * (n % 2)) & 0xffff_ffff) as u32)
+            });
+            core::array::from_fn(|h| {
+                core::array::from_fn(|c| core::array::from_fn(|k| halves[9 * h + 3 * c + k]))
+            })
+        };
+        (0..vertices).map(vectors).collect()
+    }
+
     fn value(&self, sums: &Total<'_>, vertex: usize, power: f64) -> HemisphereVectors {
         let Some(scale) = self.0.scale(vertex, power) else { return HemisphereVectors::default() };
         vectors_of(sums, self.0.cells.len(), vertex, scale)
@@ -114,9 +157,9 @@ pub(crate) fn vectors_of(sums: &Total<'_>, vertices: usize, vertex: usize, scale
         core::array::from_fn(|octant| sums.get((octant * vertices + vertex) * NUMBERS));
     core::array::from_fn(|hemisphere| {
         let (axis, negative) = (hemisphere / 2, hemisphere % 2);
-        let mut numbers = [0; NUMBERS];
+        let mut numbers = [0i64; NUMBERS];
         for octant in (0..OCTANTS).filter(|octant| octant >> axis & 1 == negative) {
-            numbers.iter_mut().zip(octants[octant]).for_each(|(sum, part)| *sum += part);
+            numbers.iter_mut().zip(octants[octant]).for_each(|(sum, part)| *sum = sum.wrapping_add(part));
         }
         core::array::from_fn(|channel| {
             core::array::from_fn(|component| (numbers[3 * channel + component] as f64 * scale) as f32)

@@ -115,3 +115,14 @@ fn many_cells_in_one_flight_are_all_added() {
         );
     }
 }
+
+/// The vectors take the place of the sums while those of other vertices are still read.
+#[test]
+fn all_values_at_once_are_those_of_each_vertex() {
+    let cells = Boxes { low: [0.0; 3], step: [1.0; 3], count: [5, 3, 2] };
+    let regions = Regions::new((0..30).map(|_| None));
+    let estimate = VectorTracks::new(cells, &regions);
+    let sums: Vec<i64> = (0..estimate.sums() as i64).map(|n| (n * 7919) % 10_007 - 5000).collect();
+    let each: Vec<_> = (0..30).map(|vertex| estimate.value(&Total::of(&sums), vertex, 3.0)).collect();
+    assert_eq!(estimate.values(sums, 30, 3.0), each);
+}
