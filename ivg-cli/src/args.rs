@@ -10,11 +10,11 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(crate) use self::grid::{
-    BakeSettings, EffectsArgument, EstimatorArgument, FilterArgument, RecodeArguments,
+    BakeSettings, EffectsArgument, EstimatorArgument, FilterArgument, GridStorage, RecodeArguments,
     ReconstructionArgument, SampleArguments,
 };
 pub(crate) use self::mesh::{ExtractArguments, MeshArguments, SCENE_POSITIONS, StorageArguments};
-use crate::scene_args::{Bounds, GridSize, PictureSize, ScheduleArgument};
+use crate::scene_args::{Bounds, GridSize, PictureSize, ScheduleArgument, ShardArgument};
 
 /// Streams lit 3D scenes: bakes indirect light into an irradiance vector grid, orders meshes coarse-to-fine, serves both,
 /// and renders what has arrived.
@@ -33,6 +33,8 @@ pub(crate) enum Command {
     Plan(PlanArguments),
     /// Bake the indirect light of a scene into an irradiance vector grid (.ivg).
     Bake(BakeArguments),
+    /// Add up the accumulator files of a bake that was divided: the same .ivg file, byte for byte, as if it had not been.
+    Merge(MergeArguments),
     /// Order a mesh coarse-to-fine and write it as a progressive mesh (.pmesh).
     Mesh(MeshArguments),
     /// Write a scene directory that any HTTP server can stream: scene.glb, light.ivg, one .pmesh a mesh.
@@ -121,9 +123,30 @@ pub(crate) struct BakeArguments {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) bake: BakeSettings,
+    /// Trace only part K of N of the photons, and write their sums for ivg merge: the output is an accumulator file (.acc).
+    #[arg(long, value_name = "K/N", conflicts_with_all = ["accuracy", "time", "checkpoint", "resume"])]
+    pub(crate) shard: Option<ShardArgument>,
+    /// Write the sums to this accumulator file now and then, and at the end.
+    #[arg(long, value_name = "FILE.acc", conflicts_with = "accuracy")]
+    pub(crate) checkpoint: Option<PathBuf>,
+    /// Go on from this accumulator file, up to --photons; the file may be that of --checkpoint.
+    #[arg(long, value_name = "FILE.acc", conflicts_with = "accuracy")]
+    pub(crate) resume: Option<PathBuf>,
     /// Print figures as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeArguments {
+    /// The accumulator files of all shards of a bake, in any order.
+    #[arg(required = true, value_name = "FILE.acc")]
+    pub(crate) files: Vec<PathBuf>,
+    /// Output file.
+    #[arg(short, long, value_name = "FILE.ivg")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) storage: GridStorage,
 }
 
 #[derive(Debug, Args)]

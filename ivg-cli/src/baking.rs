@@ -1,18 +1,22 @@
 //! Scene in, baked grid and its file out: shared by every command that bakes.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ivg_bake::{BakeOptions, BakeStats, Estimator, PilotReport};
-use ivg_format::{EncodeOptions, GridSource, Quantity};
+use ivg_bake::{
+    Accumulator, AccuracyReport, BakeOptions, BakeResult, BakeStats, Estimator, PilotReport, Shard,
+};
+use ivg_format::{EncodeOptions, Encoding, GridSource, Order, Quantity};
 use ivg_grid::IrradianceGrid;
 use ivg_scene::import::{self, ImportOptions};
 use ivg_scene::plan::{self, PlanOptions};
 use ivg_scene::{EffectPlan, FlatScene, Need, Scene};
 
-use crate::args::{BakeSettings, EffectsArgument, EstimatorArgument, SceneArguments};
+use crate::args::{BakeSettings, EffectsArgument, SceneArguments};
 use crate::failure::Failure;
 use crate::files::shown;
-use crate::progress::BakeBar;
+use crate::scene_args::GridArgument;
+use crate::watch::{StageTime, Watch};
 use crate::writing::{self, Extras};
 
 /// A scene with everything a bake or a picture needs to know about it.
@@ -28,7 +32,7 @@ impl LoadedScene {
         Self::load(&arguments.scene, arguments.lights.as_deref())
     }
 
-    pub(crate) fn load(path: &std::path::Path, lights: Option<&std::path::Path>) -> Result<Self, Failure> {
+    pub(crate) fn load(path: &Path, lights: Option<&Path>) -> Result<Self, Failure> {
         let options = ImportOptions { lights: lights.map(Into::into) };
         let scene = import::load(path, &options).map_err(Failure::new)?;
         for warning in &scene.warnings {
@@ -50,9 +54,14 @@ pub(crate) struct Baked {
     pub(crate) plan: EffectPlan,
     pub(crate) grid: IrradianceGrid,
     pub(crate) stats: BakeStats,
+    pub(crate) accuracy: Option<AccuracyReport>,
     pub(crate) file: Vec<u8>,
     /// Wall time of pilot and bake.
     pub(crate) elapsed: Duration,
+    /// Why the grid is as fine as it is, if the scene decided.
+    pub(crate) grid_reason: Option<String>,
+    /// Time of each part of the bake.
+    pub(crate) stages: Vec<StageTime>,
 }
 
 /// Plans a scene and measures the plan by a pilot run of 1 % of the photons.
@@ -82,26 +91,156 @@ pub(crate) fn report_unsupported(scene: &Scene, plan: &EffectPlan) {
 
 /// Plans, bakes and encodes; shows progress.
 pub(crate) fn bake(loaded: &LoadedScene, settings: &BakeSettings) -> Result<Baked, Failure> {
+    bake_with(loaded, settings, SumFiles::default())
+}
+
+/// The same, with sums read and written.
+pub(crate) fn bake_with(
+    loaded: &LoadedScene,
+    settings: &BakeSettings,
+    sums: SumFiles<'_>,
+) -> Result<Baked, Failure> {
     loaded.scene.require_light().map_err(Failure::new)?;
-    let options = bake_options(settings);
-    if options.quantity == Quantity::Radiance && options.estimator != Estimator::TrackLength {
+    let mut options = bake_options(settings);
+    if options.quantity == Quantity::Radiance && !options.estimator.gives_radiance() {
         return Err(Failure::usage(format_args!(
-            "{} stores radiance, which the estimator {} does not give; use --estimator track-length, or an encoding of irradiance vectors",
+            "{} stores radiance, which the estimator {} does not give; use --estimator track-length or gather, or an encoding of irradiance vectors",
             settings.encoding.name(),
             options.estimator.name(),
         )));
     }
     let start = Instant::now();
-    let (plan, _) = plan(loaded, planning(settings.effects), &options)?;
+    let grid_reason = decide_grid(loaded, settings, &mut options)?;
+    let mut planning = planning(settings.effects);
+    if let Some(accuracy) = settings.accuracy {
+        planning.energy_cutoff = planning.energy_cutoff.min(CUTOFF_SHARE * accuracy);
+    }
+    let (plan, _) = plan(loaded, planning, &pilot_options(&options))?;
     report_unsupported(&loaded.scene, &plan);
-    let bar = BakeBar::new("bake", settings.photons, "photons");
-    let result = ivg_bake::bake(&loaded.scene, &loaded.flat, &plan, &options, &bar);
-    bar.finish();
-    let result = result.map_err(Failure::new)?;
+    let watch = Watch::new(start, settings.time, &options);
+    let result = simulate(loaded, &plan, &options, &watch, sums);
+    let stages = watch.finish();
+    let result = result?;
     let elapsed = start.elapsed();
-    let file = encode(&result.grid, &result.stats, settings, &plan)?;
-    Ok(Baked { plan, grid: result.grid, stats: result.stats, file, elapsed })
+    let stored = Stored {
+        encoding: settings.encoding,
+        order: settings.order,
+        per_slice: settings.per_slice,
+        seed: settings.seed,
+        bounces: plan.max_bounces,
+        estimator: options.estimator,
+    };
+    let file = encode(&result.grid, &result.stats, &stored)?;
+    let (grid, stats, accuracy) = (result.grid, result.stats, result.accuracy);
+    Ok(Baked { plan, grid, stats, accuracy, file, elapsed, stages, grid_reason })
 }
+
+/// Accumulator files to go on from and to write.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct SumFiles<'a> {
+    pub(crate) resume: Option<&'a Path>,
+    pub(crate) checkpoint: Option<&'a Path>,
+}
+
+/// How often sums are written.
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
+
+fn simulate(
+    loaded: &LoadedScene,
+    plan: &EffectPlan,
+    options: &BakeOptions,
+    watch: &Watch,
+    files: SumFiles<'_>,
+) -> Result<BakeResult, Failure> {
+    let LoadedScene { scene, flat } = loaded;
+    if files.resume.is_none() && files.checkpoint.is_none() {
+        return ivg_bake::bake(scene, flat, plan, options, watch).map_err(Failure::new);
+    }
+    let from = files.resume.map(read_sums).transpose()?;
+    let mut written = Instant::now();
+    let mut failure = None;
+    let mut save = |sums: &Accumulator| {
+        if let (Some(path), None, true) =
+            (files.checkpoint, &failure, written.elapsed() >= CHECKPOINT_INTERVAL)
+        {
+            failure = crate::files::write(path, &sums.to_bytes()).err();
+            written = Instant::now();
+        }
+    };
+    let sums = ivg_bake::accumulate(scene, flat, plan, options, (Shard::ALL, from), watch, &mut save);
+    let mut sums = sums.map_err(Failure::new)?;
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    if let Some(path) = files.checkpoint {
+        crate::files::write(path, &sums.to_bytes())?;
+    }
+    sums.end_here();
+    sums.finish().map_err(Failure::new)
+}
+
+/// Traces a shard of the photons: its sums as a file.
+pub(crate) fn shard(loaded: &LoadedScene, settings: &BakeSettings, shard: Shard) -> Result<Vec<u8>, Failure> {
+    loaded.scene.require_light().map_err(Failure::new)?;
+    let mut options = bake_options(settings);
+    decide_grid(loaded, settings, &mut options)?;
+    let (plan, _) = plan(loaded, planning(settings.effects), &pilot_options(&options))?;
+    report_unsupported(&loaded.scene, &plan);
+    let watch = Watch::new(Instant::now(), None, &options);
+    let LoadedScene { scene, flat } = loaded;
+    let sums = ivg_bake::accumulate(scene, flat, &plan, &options, (shard, None), &watch, &mut |_| {});
+    watch.finish();
+    Ok(sums.map_err(Failure::new)?.to_bytes())
+}
+
+/// Reads an accumulator file.
+pub(crate) fn read_sums(path: &Path) -> Result<Accumulator, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| Failure::file(path, error))?;
+    Accumulator::from_bytes(&bytes).map_err(|error| Failure::file(path, error))
+}
+
+/// Share of the error asked for that light beyond the last reflection followed may be.
+const CUTOFF_SHARE: f64 = 0.1;
+
+/// Photons of a bake where nothing else ends it.
+const PHOTONS: u64 = 1_000_000;
+
+/// Photons where accuracy or time ends the bake: the sums hold so many with up to 127 reflections.
+const MOST_PHOTONS: u64 = 1 << 33;
+
+/// Options of the bake that a pilot estimates: of the usual length where only accuracy or time ends it.
+fn pilot_options(options: &BakeOptions) -> BakeOptions {
+    let photons = if options.photons == MOST_PHOTONS { PHOTONS } else { options.photons };
+    let estimator = match options.estimator {
+        // Its time is not told; the reflections and effects are those of photons.
+        Estimator::Gather => Estimator::TrackLength,
+        of_photons => of_photons,
+    };
+    BakeOptions { photons, estimator, accuracy: None, ..options.clone() }
+}
+
+/// Most vertices of a grid that the scene decides.
+const AUTO_VERTICES: u64 = 1 << 18;
+
+/// Decides the grid, if the scene is to, and says why.
+fn decide_grid(
+    loaded: &LoadedScene,
+    settings: &BakeSettings,
+    options: &mut BakeOptions,
+) -> Result<Option<String>, Failure> {
+    if settings.grid != GridArgument::Auto {
+        return Ok(None);
+    }
+    let LoadedScene { scene, flat } = loaded;
+    let mut plan = plan::analyse(scene, flat, &planning(settings.effects));
+    plan.max_bounces = AUTO_BOUNCES;
+    let found = ivg_bake::resolution(scene, flat, &plan, options, AUTO_VERTICES).map_err(Failure::new)?;
+    options.dims = found.dims;
+    Ok(Some(found.reason()))
+}
+
+/// Reflections of the photons that tell how far light flies.
+const AUTO_BOUNCES: u32 = 16;
 
 /// What a plan is made with, where no error is asked for.
 pub(crate) fn planning(effects: EffectsArgument) -> PlanOptions {
@@ -110,48 +249,59 @@ pub(crate) fn planning(effects: EffectsArgument) -> PlanOptions {
 
 /// The options of the baker that the arguments name.
 pub(crate) fn bake_options(settings: &BakeSettings) -> BakeOptions {
+    let until_good = settings.accuracy.is_some() || settings.time.is_some();
+    let usual = BakeOptions::default();
     BakeOptions {
-        dims: settings.grid.0,
-        bounds: settings.bounds.map(|bounds| (bounds.0, bounds.1)),
-        photons: settings.photons,
-        estimator: match settings.estimator {
-            EstimatorArgument::TrackLength => Estimator::TrackLength,
-            EstimatorArgument::FaceCrossing => Estimator::FaceCrossing,
-            EstimatorArgument::FaceCrossingRr6983 => Estimator::FaceCrossingRr6983,
+        dims: match settings.grid {
+            GridArgument::Size(size) => size.0,
+            GridArgument::Auto => usual.dims,
         },
+        bounds: settings.bounds.map(|bounds| (bounds.0, bounds.1)),
+        photons: settings.photons.unwrap_or(if until_good { MOST_PHOTONS } else { PHOTONS }),
+        accuracy: settings.accuracy,
+        paths: settings.paths.unwrap_or(if settings.accuracy.is_some() { u32::MAX } else { usual.paths }),
+        estimator: settings.estimator.into(),
         seed: settings.seed,
         threads: settings.threads.map(usize::from),
         quantity: settings.encoding.quantity(),
-        ..BakeOptions::default()
     }
 }
 
+/// What a file says besides the grid, and how it stores that.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stored {
+    pub(crate) encoding: Encoding,
+    pub(crate) order: Order,
+    pub(crate) per_slice: u32,
+    pub(crate) seed: u64,
+    pub(crate) bounces: u32,
+    pub(crate) estimator: Estimator,
+}
+
 /// The grid as a file. Its metadata hold what repeats the bake; nothing in it depends on time or threads.
-fn encode(
-    grid: &IrradianceGrid,
-    stats: &BakeStats,
-    settings: &BakeSettings,
-    plan: &EffectPlan,
-) -> Result<Vec<u8>, Failure> {
-    let estimator = bake_options(settings).estimator.name();
-    let numbers = [settings.photons, settings.seed, u64::from(plan.max_bounces)].map(|n| n.to_string());
+pub(crate) fn encode(grid: &IrradianceGrid, stats: &BakeStats, stored: &Stored) -> Result<Vec<u8>, Failure> {
+    let numbers = [stats.photons, stored.seed, u64::from(stored.bounces)].map(|n| n.to_string());
     let [photons, seed, bounces] = numbers;
+    // Not for bakes by photons alone, so that they are told apart.
+    let paths = (stats.paths > 0).then(|| ("paths", stats.paths.to_string()));
     let extras = Extras {
         lights: stats.lights.iter().map(|light| (light.name.clone(), light.direct)).collect(),
         metadata: [
             ("generator", concat!("ivg ", env!("CARGO_PKG_VERSION")).to_owned()),
-            ("estimator", estimator.to_owned()),
+            ("estimator", stored.estimator.name().to_owned()),
             ("photons", photons),
             ("seed", seed),
             ("bounces", bounces),
         ]
+        .into_iter()
+        .chain(paths)
         .map(|(key, value)| (key.to_owned(), value))
-        .into(),
+        .collect(),
     };
     let options = EncodeOptions {
-        encoding: settings.encoding,
-        order: settings.order,
-        vertices_per_slice: settings.per_slice,
+        encoding: stored.encoding,
+        order: stored.order,
+        vertices_per_slice: stored.per_slice,
         ..EncodeOptions::default()
     };
     let bundles = writing::bundles(grid, &options);

@@ -24,6 +24,7 @@ mod reading;
 mod rounding;
 mod scene_args;
 mod table;
+mod watch;
 mod writing;
 
 use std::process::ExitCode;
@@ -58,6 +59,7 @@ fn run(command: Command) -> Result<ExitCode, Failure> {
         Command::Demo(arguments) => commands::demo::run(&arguments),
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Bake(arguments) => commands::bake::run(&arguments),
+        Command::Merge(arguments) => commands::merge::run(&arguments),
         Command::Mesh(arguments) => commands::mesh::run(&arguments),
         Command::Pack(arguments) => commands::pack::run(&arguments),
         Command::Info(arguments) => commands::info::run(&arguments),

@@ -59,15 +59,15 @@ impl BakeBar {
 }
 
 impl ivg_bake::Monitor for BakeBar {
-    fn progress(&self, done: u64, _total: u64) {
+    fn progress(&self, done: u64, total: u64) {
         // Several threads report; the bar shows the largest count it was told.
         if self.last.fetch_max(done, Ordering::Relaxed) < done {
+            // A bake to an accuracy finds out on its way how many photons it takes.
+            if self.bar.length() != Some(total) {
+                self.bar.set_length(total);
+            }
             self.bar.set_position(done);
         }
-    }
-
-    fn cancelled(&self) -> bool {
-        false
     }
 }
 

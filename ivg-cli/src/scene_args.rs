@@ -46,6 +46,42 @@ impl FromStr for Bounds {
     }
 }
 
+/// A grid size, or one that the scene calls for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum GridArgument {
+    Size(GridSize),
+    Auto,
+}
+
+impl FromStr for GridArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        text.parse().map(Self::Size).map_err(|error| format!("{error}, or auto"))
+    }
+}
+
+/// Part K of N of the photons of a bake.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct ShardArgument(pub(crate) ivg_bake::Shard);
+
+impl FromStr for ShardArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').map(|(k, n)| (k.parse::<u32>(), n.parse::<u32>()));
+        match numbers {
+            Some((Ok(index), Ok(count))) if (1..=count).contains(&index) => {
+                Ok(Self(ivg_bake::Shard { index, count }))
+            }
+            _ => Err(format!("'{text}' is not a shard; give its number and how many there are, such as 2/4")),
+        }
+    }
+}
+
 /// Largest side of a picture \[pixels\].
 const MAX_SIDE: u32 = 16_384;
 
@@ -102,6 +138,24 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
         _ => Err(format!("'{text}' is not a number between 0 and 1")),
+    }
+}
+
+/// A share in (0, 1) as a number of per cent with its sign.
+pub(crate) fn percent(text: &str) -> Result<f64, String> {
+    let number = text.strip_suffix('%').and_then(|number| number.trim().parse::<f64>().ok());
+    match number {
+        Some(value) if value > 0.0 && value < 100.0 => Ok(value / 100.0),
+        _ => Err(format!("'{text}' is not an accuracy; give more than 0% and less than 100%, such as 2%")),
+    }
+}
+
+/// A number of seconds above zero, up to a year.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    const YEAR: f64 = 365.0 * 86_400.0;
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= YEAR => Ok(value),
+        _ => Err(format!("'{text}' is not a number of seconds above zero")),
     }
 }
 

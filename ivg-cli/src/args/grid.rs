@@ -6,23 +6,35 @@ use clap::{Args, ValueEnum};
 use ivg_format::{Encoding, Order};
 
 use super::registry;
-use crate::scene_args::{Bounds, GridSize};
+use crate::scene_args::{Bounds, GridArgument};
 
 /// How a grid is baked.
 #[derive(Debug, Args)]
 pub(crate) struct BakeSettings {
-    /// Number of grid vertices along x, y and z.
+    /// Number of grid vertices along x, y and z; auto: a step of an eighth of the distance that light flies between surfaces,
+    /// with at most 262144 vertices.
     #[arg(long, value_name = "NXxNYxNZ", default_value = "16x16x16")]
-    pub(crate) grid: GridSize,
+    pub(crate) grid: GridArgument,
     /// First and last vertex of the grid, in metres; default: the scene's bounds and a margin.
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     pub(crate) bounds: Option<Bounds>,
-    /// Number of photons traced.
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = crate::scene_args::count::<u64>)]
-    pub(crate) photons: u64,
-    /// How photon flights become what the grid holds; sh2-28 needs track-length.
+    /// Number of photons traced [default: 1000000]; with --accuracy or --time, the most [default: as many as it takes].
+    #[arg(long, value_name = "N", value_parser = crate::scene_args::count::<u64>)]
+    pub(crate) photons: Option<u64>,
+    /// Trace until the error of the grid is at most so much, such as 2% (root mean square of the irradiance along the axes,
+    /// relative, noise and bias together, with 95 % confidence), and say what was reached.
+    #[arg(long, value_name = "PERCENT", value_parser = crate::scene_args::percent)]
+    pub(crate) accuracy: Option<f64>,
+    /// End early after so many seconds. The result then depends on how fast the machine is; the photons traced are printed
+    /// and stored in the file.
+    #[arg(long, value_name = "SECONDS", value_parser = crate::scene_args::seconds)]
+    pub(crate) time: Option<f64>,
+    /// How light becomes what the grid holds; sh2-28 needs track-length or gather.
     #[arg(long, value_enum, default_value_t = EstimatorArgument::TrackLength)]
     pub(crate) estimator: EstimatorArgument,
+    /// Paths of each vertex for --estimator gather [default: 4096]; with --accuracy, the most [default: as many as it takes].
+    #[arg(long, value_name = "N", value_parser = crate::scene_args::count::<u32>)]
+    pub(crate) paths: Option<u32>,
     /// How the file stores a vertex.
     #[arg(long, value_parser = registry::encoding(), default_value = "packed-oct24")]
     pub(crate) encoding: Encoding,
@@ -38,6 +50,21 @@ pub(crate) struct BakeSettings {
     /// Number of threads [default: one a core]; the result does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+    /// Vertices of each slice across the longest axis that one bundle brings; bundles of octree have S × (vertices
+    /// along the longest axis), those of explicit at most so many.
+    #[arg(long, value_name = "S", default_value_t = 64, value_parser = crate::scene_args::count::<u32>)]
+    pub(crate) per_slice: u32,
+}
+
+/// How a grid made of accumulators is stored; give what the undivided bake would be given.
+#[derive(Debug, Args)]
+pub(crate) struct GridStorage {
+    /// How the file stores a vertex [default: packed-oct24, or sh2-28 if the shards were baked for it].
+    #[arg(long, value_parser = registry::encoding())]
+    pub(crate) encoding: Option<Encoding>,
+    /// In which order the file brings the vertices.
+    #[arg(long, value_parser = registry::order(), default_value = "slices")]
+    pub(crate) order: Order,
     /// Vertices of each slice across the longest axis that one bundle brings; bundles of octree have S × (vertices
     /// along the longest axis), those of explicit at most so many.
     #[arg(long, value_name = "S", default_value_t = 64, value_parser = crate::scene_args::count::<u32>)]
@@ -61,6 +88,19 @@ pub(crate) enum EstimatorArgument {
     /// Crossings as RR-6983 prints them: biased by -1/3 in uniform light, for comparison.
     #[value(name = "face-crossing-rr6983")]
     FaceCrossingRr6983,
+    /// Every vertex path traced: unbiased and slow, no photons.
+    Gather,
+}
+
+impl From<EstimatorArgument> for ivg_bake::Estimator {
+    fn from(argument: EstimatorArgument) -> Self {
+        match argument {
+            EstimatorArgument::TrackLength => Self::TrackLength,
+            EstimatorArgument::FaceCrossing => Self::FaceCrossing,
+            EstimatorArgument::FaceCrossingRr6983 => Self::FaceCrossingRr6983,
+            EstimatorArgument::Gather => Self::Gather,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -1,16 +1,37 @@
+mod report;
+
 use std::process::ExitCode;
 
 use serde_json::json;
 
 use crate::args::BakeArguments;
-use crate::baking::{self, LoadedScene};
+use crate::baking::{self, LoadedScene, SumFiles};
 use crate::failure::Failure;
+use crate::scene_args::ShardArgument;
 use crate::{files, table};
 
 pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
+    if let Some(ShardArgument(shard)) = arguments.shard {
+        files::require_extension(&arguments.out, &["acc"])?;
+        let loaded = LoadedScene::open(&arguments.scene)?;
+        let bytes = baking::shard(&loaded, &arguments.bake, shard)?;
+        files::write(&arguments.out, &bytes)?;
+        let out = &arguments.out;
+        if arguments.json {
+            let report =
+                json!({ "file": out, "bytes": bytes.len(), "shard": shard.index, "shards": shard.count });
+            files::print(&format!("{report}\n"))?;
+        } else {
+            let [index, count] = [shard.index, shard.count];
+            let size = table::bytes(bytes.len() as u64);
+            files::print(&format!("{}: shard {index} of {count}, {size}\n", out.display()))?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
     files::require_extension(&arguments.out, &["ivg"])?;
     let loaded = LoadedScene::open(&arguments.scene)?;
-    let baked = baking::bake(&loaded, &arguments.bake)?;
+    let sums = SumFiles { resume: arguments.resume.as_deref(), checkpoint: arguments.checkpoint.as_deref() };
+    let baked = baking::bake_with(&loaded, &arguments.bake, sums)?;
     files::write(&arguments.out, &baked.file)?;
     let lattice = baked.grid.lattice();
     let seconds = baked.elapsed.as_secs_f64();
@@ -20,12 +41,14 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
             "file": arguments.out,
             "bytes": baked.file.len(),
             "dims": lattice.dims,
+            "grid_reason": baked.grid_reason,
             "origin": lattice.origin,
             "step": lattice.step,
             "vertices": lattice.vertex_count(),
             "valid_vertices": stats.valid_vertices,
             "blocked_edges": stats.blocked_edges,
             "photons": stats.photons,
+            "paths": stats.paths,
             "flights": stats.flights,
             "bounces": baked.plan.max_bounces,
             "emitted_watts": stats.emitted.to_array(),
@@ -34,21 +57,38 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
             "cut_watts": stats.cut.to_array(),
             "lights": stats.lights.iter().map(|light| &light.name).collect::<Vec<_>>(),
             "seconds": seconds,
+            "stages": baked.stages.iter().map(report::stage_json).collect::<Vec<_>>(),
+            "accuracy": baked.accuracy.as_ref().map(report::accuracy_json),
         });
         files::print(&format!("{report}\n"))?;
         return Ok(ExitCode::SUCCESS);
     }
     let [nx, ny, nz] = lattice.dims;
     files::print(&format!(
-        "{}: {nx} x {ny} x {nz} vertices ({} valid), {} in {seconds:.2} s\n{} photons, {} flights ({:.2} million a second), up to {} bounces\n",
+        "{}: {nx} x {ny} x {nz} vertices ({} valid), {} in {seconds:.2} s\n",
         arguments.out.display(),
         stats.valid_vertices,
         table::bytes(baked.file.len() as u64),
-        stats.photons,
-        stats.flights,
-        stats.flights as f64 / seconds / 1e6,
-        baked.plan.max_bounces,
     ))?;
+    if let Some(reason) = &baked.grid_reason {
+        files::print(&format!("grid {reason}\n"))?;
+    }
+    if stats.photons > 0 {
+        files::print(&format!(
+            "{} photons, {} flights, up to {} bounces\n",
+            stats.photons, stats.flights, baked.plan.max_bounces,
+        ))?;
+    }
+    if stats.paths > 0 {
+        files::print(&format!("{} paths traced to gather light\n", stats.paths))?;
+    }
+    files::print(&report::stages_text(&baked.stages))?;
+    if let Some(report) = &baked.accuracy {
+        files::print(&report::accuracy_text(report))?;
+        if !report.holds() {
+            eprintln!("ivg: warning: {}", report::advice(report));
+        }
+    }
     let sum = |watts: glam::DVec3| watts.element_sum();
     let emitted = sum(stats.emitted);
     if emitted > 0.0 {

@@ -22,6 +22,7 @@ use crate::failure::Failure;
 use crate::live::Live;
 use crate::packing::{self, Meshes};
 use crate::picture::{self, Renderer};
+use crate::scene_args::GridArgument;
 use crate::{files, progress};
 
 /// How much has arrived when each picture is drawn: share of the vertices of the meshes, share of the vertices of the
@@ -116,9 +117,12 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<ExitCode, Failure> {
 
 fn settings(arguments: &DemoArguments) -> BakeSettings {
     BakeSettings {
-        grid: arguments.grid,
+        grid: GridArgument::Size(arguments.grid),
         bounds: None,
-        photons: arguments.photons,
+        photons: Some(arguments.photons),
+        accuracy: None,
+        time: None,
+        paths: None,
         estimator: EstimatorArgument::TrackLength,
         encoding: Encoding::PackedOct24,
         order: Order::Slices,

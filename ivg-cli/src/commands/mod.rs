@@ -6,6 +6,7 @@ pub(crate) mod demo;
 pub(crate) mod extract;
 pub(crate) mod fetch;
 pub(crate) mod info;
+pub(crate) mod merge;
 pub(crate) mod mesh;
 pub(crate) mod pack;
 pub(crate) mod plan;
