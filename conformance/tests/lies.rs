@@ -2,9 +2,10 @@
 
 use conformance::oracles::{pmesh_decode, pmesh_lod, pmesh_packets};
 use conformance::vectors::edit::in_envelope;
+use conformance::vectors::parts::Parts;
 use conformance::vectors::{Format, Vector, vectors};
 use ivg_wire::splitmix64;
-use pmesh_format::{Header, Limits, Step};
+use pmesh_format::{Header, IndexedMesh, Limits, Replay, Step, decode_packet};
 use std::ops::Range;
 
 /// Where the payload of each packet lies, and its record.
@@ -65,5 +66,39 @@ fn both_readers_agree_on_packets_that_nobody_writes() {
     for seed in 0..400 {
         let data: Vec<u8> = (0..200).flat_map(|n| splitmix64(seed, n).to_le_bytes()).collect();
         pmesh_packets(&data);
+    }
+}
+
+/// A packet whose vertices have as many wedges as they should, but others more and others fewer, is refused for what these become;
+/// then the right one comes.
+#[test]
+fn wedges_of_a_refused_packet_leave_no_trace() {
+    let vector = vectors().into_iter().find(|vector| vector.name == "0011-raw-attributes").unwrap();
+    let Ok(Step::Consumed(_, header)) = Header::read(&vector.bytes, &Limits::default()) else {
+        panic!("no header")
+    };
+    let mut replay = Replay::new(&header);
+    let mut refused = 0;
+    for (k, (payload, record)) in (0..).zip(packets(&vector.bytes)) {
+        let mut parts = Parts::read(&header, k, &vector.bytes[payload.clone()]);
+        let place = parts.wedge_counts.windows(2).position(|pair| pair[0] > pair[1]);
+        if let (Some(place), false) = (place, parts.wedge_targets.is_empty()) {
+            parts.wedge_counts.swap(place, place + 1);
+            parts.wedge_targets[0] = 99;
+            // Of the same length: numbers of one byte each.
+            let lie = in_envelope(&vector.bytes, record.clone(), payload.start, &parts.payload());
+            let lie = decode_packet(&header, k, &lie[record.clone()]).unwrap();
+            assert!(replay.apply(&lie).is_err());
+            refused += 1;
+        }
+        replay.apply(&decode_packet(&header, k, &vector.bytes[record]).unwrap()).unwrap();
+    }
+    assert!(refused > 0, "no packet has vertices with more and with fewer wedges");
+    let mut whole = Replay::from_file(&vector.bytes, &Limits::default()).unwrap();
+    for level in whole.levels().unwrap() {
+        replay.set_level(level).unwrap();
+        whole.set_level(level).unwrap();
+        let unnamed = IndexedMesh { material_names: Vec::new(), ..whole.mesh() };
+        assert_eq!(replay.mesh(), unnamed, "level {level}");
     }
 }
