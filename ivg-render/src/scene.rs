@@ -34,8 +34,8 @@ pub struct RenderScene {
     pub origin: DVec3,
     /// Surfaces, placed in scene space. Emissive triangles are area lights.
     pub meshes: Vec<RenderMesh>,
-    /// Materials of the triangles. Surfaces are opaque and reflect diffusely on both sides, as the baker has them;
-    /// mirrors and glass are what the effect plan reports as not simulated.
+    /// Materials of the triangles. Surfaces are drawn opaque and diffuse on both sides, with their albedo; what mirrors and
+    /// glass do to the light of other surfaces is in the grid.
     pub materials: Vec<Material>,
     /// Images that materials name.
     pub textures: Vec<Texture>,

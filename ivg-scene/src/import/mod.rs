@@ -4,7 +4,7 @@
 //! | format | lights | camera | materials |
 //! |---|---|---|---|
 //! | OBJ + MTL | `Ke`: emitted radiance \[W/(m² sr)\] | none | `Kd` linear, `map_Kd` sRGB, `Ks Ns Tf Ni d illum` |
-//! | glTF 2.0 | emissive factor × strength as radiance \[W/(m² sr)\], punctual lights in W/sr and W/m² | perspective | base colour, metallic, roughness, transmission |
+//! | glTF 2.0 | emissive factor × strength as radiance \[W/(m² sr)\], punctual lights in W/sr and W/m² | perspective | base colour, metallic, roughness, transmission, index of refraction, thin or solid |
 //! | PLY | none | none | [`Material::default`](crate::Material) |
 //!
 //! glTF states punctual lights in candela and lux. They are taken 1:1 as radiometric figures (W/sr, W/m²), as
