@@ -16,7 +16,7 @@ use crate::estimate::track_length::{self, RadianceTracks, VectorTracks};
 use crate::ready::Ready;
 use crate::region::SUB_CELLS;
 use crate::stage::Effects;
-use crate::tally::{Photons, Tally, stretch};
+use crate::tally::{PHOTONS_A_PIECE, Photons, Tally, stretch};
 use crate::trace::Books;
 use crate::workers::Workers;
 use crate::{BakeError, BakeOptions, BakeResult, BakeStage, BakeStats, BakedLight, Estimator, Monitor};
@@ -190,7 +190,7 @@ impl Accumulator {
             return Err(AccumulatorError::OtherShard { index: other.index, count: other.count });
         }
         // Pieces are dealt in turn, so that a whole bake can be gone on with; a part ends inside a stretch of its own.
-        let whole_pieces = from.head.traced % crate::tally::PHOTONS_A_PIECE == 0;
+        let whole_pieces = from.head.traced.is_multiple_of(PHOTONS_A_PIECE);
         if from.head.traced > self.head.photons || (own.count > 1 && !whole_pieces) {
             return Err(AccumulatorError::TooFar { traced: from.head.traced, photons: self.head.photons });
         }
