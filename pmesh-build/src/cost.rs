@@ -209,3 +209,6 @@ fn curvature(surface: &Surface, u: u32, v: u32) -> f64 {
     };
     around.iter().map(|&f| turn(f)).fold(0.0, f64::max)
 }
+
+#[cfg(test)]
+mod tests;
