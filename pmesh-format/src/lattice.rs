@@ -56,7 +56,8 @@ pub(crate) fn bounds(positions: &[[f32; 3]]) -> [[f32; 3]; 2] {
 
 impl Positions {
     /// The positions as a reader will have them \[m\]: as given for [`Positions::F32`], otherwise the nearest points of the
-    /// lattice in their bounding box (PMESH-POS-03). Doing it twice changes nothing more.
+    /// lattice in their bounding box (PMESH-POS-03). Doing it again changes nothing more, unless the two longest sides of the
+    /// box are equal but for rounding: then the other one may become the longest, and a coordinate move by 2⁻²³ of the greatest.
     ///
     /// Whoever orders a mesh orders these, so that errors are measured from what is stored.
     ///
