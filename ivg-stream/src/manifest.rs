@@ -1,7 +1,7 @@
 //! What a `scene.glb` says: the scene with its coarse meshes, and the files with the rest.
 
 use ivg_scene::{Material, Mesh, Scene, SceneError, import};
-use pmesh_format::{IndexedMesh, Replay};
+use pmesh_format::{IndexedMesh, Mode, Replay};
 
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 
@@ -99,10 +99,14 @@ pub(crate) fn nearest_level(replay: &Replay, wanted: u32) -> Option<u32> {
     Some(wanted.clamp(*levels.start(), *levels.end()))
 }
 
-/// The level of that share of all vertices, in \[0, 1\], or the highest that has arrived if that is lower.
+/// The level of that share of all vertices, in \[0, 1\], or the highest that has arrived if that is lower; of a coded mesh the
+/// last one of its packet: in between, coded packets are finer in one place than in another (PMESH-COD-01).
 pub(crate) fn level_of_share(replay: &Replay, share: f64) -> Option<u32> {
-    let wanted = (share.clamp(0.0, 1.0) * f64::from(replay.header().vertex_count)).ceil() as u32;
-    nearest_level(replay, wanted)
+    let header = replay.header();
+    let wanted = (share.clamp(0.0, 1.0) * f64::from(header.vertex_count)).ceil() as u32;
+    let packet = header.packet_of_level(wanted).filter(|_| header.mode == Mode::Coded);
+    let end = packet.and_then(|packet| header.packets.get(packet as usize)).map(|entry| entry.vertices.end);
+    nearest_level(replay, end.unwrap_or(wanted))
 }
 
 /// A level of a progressive mesh as a mesh of a scene: one vertex a wedge, so that every corner keeps its normal, texture

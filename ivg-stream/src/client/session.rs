@@ -156,7 +156,8 @@ impl Session {
     }
 
     /// The level of mesh `index` of [`Manifest::meshes`] that has `share` of its vertices, in \[0, 1\], or the highest that has
-    /// arrived if that is lower; `None` before its first packet.
+    /// arrived if that is lower; `None` before its first packet. Of a coded mesh it is the finest that the packet of these
+    /// vertices brings: levels inside coded packets are finer in one place than in another.
     #[must_use]
     pub fn level_at(&self, index: usize, share: f64) -> Option<u32> {
         self.assembly.level_at(index, share)
@@ -178,8 +179,8 @@ impl Session {
         self.assembly.step(index, from, to)
     }
 
-    /// The scene with each mesh at the level of `share` of its vertices, in [0, 1], or the highest level that has
-    /// arrived if that is lower; meshes of which nothing has arrived as in `scene.glb`.
+    /// The scene with each mesh at the level of `share` of its vertices, in [0, 1] (see [`Session::level_at`]), or the highest
+    /// level that has arrived if that is lower; meshes of which nothing has arrived as in `scene.glb`.
     #[must_use]
     pub fn scene_at(&mut self, share: f64) -> Scene {
         self.assembly.scene_at(share)

@@ -1,10 +1,14 @@
-use pmesh_format::{EncodeOptions, ProgressiveMesh};
+use pmesh_format::{EncodeOptions, Mode, PacketSize, ProgressiveMesh};
 
 use super::*;
 use crate::client::{SceneLimits, read_mesh};
 
-/// Four vertices and two triangles of materials 0 and 2; the last vertex collapses onto the first.
+/// Four vertices and two triangles of materials 0 and 2; the last vertex collapses onto the second.
 fn replay() -> Replay {
+    replay_of(&EncodeOptions::default())
+}
+
+fn replay_of(options: &EncodeOptions) -> Replay {
     let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.5]];
     let full = IndexedMesh::from_positions(positions, vec![[0, 1, 2], [1, 3, 2]]);
     let mesh = ProgressiveMesh {
@@ -19,8 +23,7 @@ fn replay() -> Replay {
         materials: vec![0, 2],
         ..ProgressiveMesh::default()
     };
-    read_mesh(&pmesh_format::encode(&mesh, &EncodeOptions::default()).unwrap(), &SceneLimits::default())
-        .unwrap()
+    read_mesh(&pmesh_format::encode(&mesh, options).unwrap(), &SceneLimits::default()).unwrap()
 }
 
 fn scene() -> Scene {
@@ -46,6 +49,18 @@ fn a_share_is_a_level_and_the_name_stays() {
         let mesh = &scene.meshes[0];
         assert_eq!((mesh.positions.len(), mesh.name.as_str()), (vertices, "coarse"), "{share}");
         assert_eq!(mesh.triangles.len(), vertices - 2);
+    }
+}
+
+#[test]
+fn a_share_of_a_coded_mesh_is_the_end_of_a_packet() {
+    let coded = EncodeOptions { mode: Mode::Coded, ..EncodeOptions::default() };
+    for (size, at_three_quarters) in [(4, 4), (3, 3)] {
+        let replay = replay_of(&EncodeOptions { packets: PacketSize::Fixed(size), ..coded });
+        assert_eq!(level_of_share(&replay, 0.75), Some(at_three_quarters), "{size} vertices a packet");
+        // No share at all is the coarsest level, whatever the packet.
+        assert_eq!(level_of_share(&replay, 0.0), Some(3));
+        assert_eq!(level_of_share(&replay, 1.0), Some(4));
     }
 }
 
