@@ -333,7 +333,7 @@ fn a_picture_takes_levels_as_coarse_as_its_pixels_allow() {
         let at = words.iter().position(|word| *word == "triangles,").expect("the number of triangles");
         words[at - 1].parse::<usize>().expect("a number")
     };
-    let [all, fine, coarse] = [&[][..], &["--pixel-error", "0.5"], &["--pixel-error", "8"]].map(triangles);
+    let [all, fine, coarse] = [&[][..], &["--pixel-error", "0.4"], &["--pixel-error", "8"]].map(triangles);
     assert!(all > fine && fine > coarse, "{all}, {fine}, {coarse}");
     let output = place.run(&["render", "sheet.obj", "-o", "bad.png", "--pixel-error", "1"]);
     assert_eq!(output.status.code(), Some(2));
