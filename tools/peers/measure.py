@@ -87,6 +87,7 @@ def _project(plain: Path, programs: Programs, effort: Effort) -> Figures:
     forms["raw q14"] = ["--mode", "raw", "--positions", "q14"]
     forms["coded q14, one packet"] = [*forms["coded q14"], "--packet", str(2**30)]
     forms["raw f32"] = ["--mode", "raw", "--positions", "f32"]
+    forms["raw f32, one packet"] = [*forms["raw f32"], "--packet", str(2**30)]
     for packet in RAW_PACKETS:
         forms[f"raw f32, {packet} a packet"] = [*forms["raw f32"], "--packet", str(packet)]
     figures: Figures = {}
@@ -99,7 +100,7 @@ def _project(plain: Path, programs: Programs, effort: Effort) -> Figures:
             figures[form] = None
             continue
         bits = next((bits for bits in BITS if f"q{bits}" in form), 0)
-        timed = form in ("coded q14", "raw f32")
+        timed = form in ("coded q14", "raw f32", "raw f32, one packet")
         read = programs.measure("stream", path, "--runs", effort.runs if timed else 1)
         figures[form] = read | {key: written[key] for key in ("order_seconds", "order_wall_seconds")}
         figures[form] |= _same(plain, path, bits, programs)

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pmesh_format::{Header, Limits, Replay, decode_all};
+use pmesh_format::{Header, Limits, Replay};
 use serde_json::{Value, json};
 
 use crate::Failure;
@@ -10,15 +10,7 @@ use crate::timing::median;
 
 /// The mesh of a file, with everything received.
 pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Replay, Failure> {
-    let mut replay = Replay::default();
-    let mut fault = None;
-    let whole = decode_all(bytes, &Limits::default(), |event| {
-        fault = fault.take().or(replay.accept(&event).err());
-    });
-    match (whole, fault) {
-        (Ok(_), None) => Ok(replay),
-        (Err(error), _) | (_, Some(error)) => Err(format!("{}: {error}", path.display()).into()),
-    }
+    Replay::from_file(bytes, &Limits::default()).map_err(|error| format!("{}: {error}", path.display()).into())
 }
 
 /// Bytes up to the end of the packet with which `level` vertices are there, and how many that packet brings in all.
@@ -27,7 +19,7 @@ fn prefix(header: &Header, level: u32) -> Option<(u64, u32)> {
     Some((packet.bytes.end, packet.vertices.end))
 }
 
-/// Figures of a file: sizes, its first hundredth, processor time to have the finest level with connectivity for all others.
+/// Figures of a file: sizes, its first hundredth, processor time to have the finest level.
 pub(crate) fn measure(path: &Path, bytes: &[u8], runs: usize) -> Result<Value, Failure> {
     let replay = load(path, bytes)?;
     let header = replay.header();
