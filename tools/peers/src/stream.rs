@@ -10,7 +10,8 @@ use crate::timing::median;
 
 /// The mesh of a file, with everything received.
 pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Replay, Failure> {
-    Replay::from_file(bytes, &Limits::default()).map_err(|error| format!("{}: {error}", path.display()).into())
+    Replay::from_file(bytes, &Limits::default())
+        .map_err(|error| format!("{}: {error}", path.display()).into())
 }
 
 /// Bytes up to the end of the packet with which `level` vertices are there, and how many that packet brings in all.
