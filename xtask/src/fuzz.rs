@@ -50,11 +50,13 @@ pub fn run(context: &mut Context, seconds: u32) -> Result<(), String> {
     Ok(())
 }
 
-/// The first folder takes what the fuzzer adds, the others are only read. A format's dictionary and its conformance vectors
-/// serve all targets whose names begin like it.
+/// The first folder takes what the fuzzer adds, the others are only read: the generated corpus, or the seeds of a target that the
+/// generator does not know. A format's dictionary and its conformance vectors serve all targets whose names begin like it.
 fn run_arguments(root: &Path, target: &str, seconds: u32) -> String {
     let format = target.split('_').next().unwrap_or_default();
-    let mut folders = format!("target/fuzz-corpus/{target} fuzz/corpus/{target}");
+    let seeds = format!("fuzz/seeds/{target}");
+    let seeds = if root.join(&seeds).is_dir() { seeds } else { format!("fuzz/corpus/{target}") };
+    let mut folders = format!("target/fuzz-corpus/{target} {seeds}");
     let vectors = format!("conformance/vectors/{format}");
     if root.join(&vectors).is_dir() {
         folders = format!("{folders} {vectors}");

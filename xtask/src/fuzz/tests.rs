@@ -30,3 +30,14 @@ fn dictionary_and_vectors_are_shared_by_the_targets_of_a_format() {
     let arguments = run_arguments(root.path(), "mesh_build", 1);
     assert!(!arguments.contains("vectors") && !arguments.contains("-dict"), "{arguments}");
 }
+
+#[test]
+fn seeds_that_nobody_generates_lie_apart() {
+    let root = tempfile::tempdir().unwrap();
+    std::fs::create_dir_all(root.path().join("fuzz/seeds/acc_decode")).unwrap();
+    let arguments = run_arguments(root.path(), "acc_decode", 1);
+    assert!(
+        arguments.starts_with("run acc_decode target/fuzz-corpus/acc_decode fuzz/seeds/acc_decode -- "),
+        "{arguments}"
+    );
+}
