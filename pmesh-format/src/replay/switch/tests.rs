@@ -129,13 +129,9 @@ fn any_bytes_of_switches_are_judged_alike() {
         let file = changed.build();
         let header = crate::tests::header_of(&file);
         let mut replay = crate::replay::Replay::new(&header);
-        let packet = |k: u32| {
-            let range = header.packet_range(k);
-            crate::decode::decode_packet(&header, k, &file[range.start as usize..range.end as usize]).unwrap()
-        };
-        replay.apply(&packet(0)).unwrap();
+        replay.apply(&packet(&header, &file, 0)).unwrap();
         let shown = replay.mesh();
-        match replay.apply(&packet(1)) {
+        match replay.apply(&packet(&header, &file, 1)) {
             Ok(_) => accepted += 1,
             Err(error) => {
                 assert_eq!(
@@ -167,13 +163,15 @@ fn a_fault_in_a_later_block_switches_nothing() {
     let file = wrong.build();
     let header = crate::tests::header_of(&file);
     let mut replay = crate::replay::Replay::new(&header);
-    let packet = |k: u32| {
-        let range = header.packet_range(k);
-        crate::decode::decode_packet(&header, k, &file[range.start as usize..range.end as usize]).unwrap()
-    };
-    replay.apply(&packet(0)).unwrap();
+    replay.apply(&packet(&header, &file, 0)).unwrap();
     let before = replay.mesh();
-    assert_eq!(replay.apply(&packet(1)).unwrap_err().rule().name, "PACKET_LENGTH");
+    assert_eq!(replay.apply(&packet(&header, &file, 1)).unwrap_err().rule().name, "PACKET_LENGTH");
     assert_eq!(replay.mesh(), before);
     assert_eq!(replay_all(&parts.build()).indices()[..faces], std::vec![[0, 1, 3]; faces]);
+}
+
+/// A packet of a file that has this header.
+fn packet<'a>(header: &'a crate::header::Header, file: &'a [u8], index: u32) -> crate::packet::Packet<'a> {
+    let range = header.packet_range(index);
+    crate::decode::decode_packet(header, index, &file[range.start as usize..range.end as usize]).unwrap()
 }
