@@ -95,6 +95,8 @@ fn main() -> ExitCode {
             if options.list {
                 runner::list(&steps, &mut std::io::stdout())
             } else {
+                let (name, value) = steps::ENVIRONMENT;
+                context = context.environment(name, value);
                 runner::run(&steps, &mut context, &mut std::io::stdout())
             }
         }

@@ -13,13 +13,23 @@ mod tests;
 #[derive(Debug)]
 pub struct Context {
     root: PathBuf,
+    environment: Vec<(&'static str, &'static str)>,
 }
 
 impl Context {
     /// Steps run in this folder, the workspace's.
     #[must_use]
     pub fn new(root: PathBuf) -> Self {
-        Self { root }
+        Self { root, environment: Vec::new() }
+    }
+
+    /// Sets an environment variable for every program that steps run, unless the person who started us set it.
+    #[must_use]
+    pub fn environment(mut self, name: &'static str, value: &'static str) -> Self {
+        if std::env::var_os(name).is_none() {
+            self.environment.push((name, value));
+        }
+        self
     }
 
     /// The folder of the workspace.
@@ -34,6 +44,10 @@ impl Context {
     ///
     /// When it cannot be started or fails; the text names the command.
     pub fn run(&self, invocation: &Invocation) -> Result<(), String> {
+        let invocation = self
+            .environment
+            .iter()
+            .fold(invocation.clone(), |invocation, (name, value)| invocation.environment(name, value));
         println!("$ {invocation}");
         invocation.run(&self.root)
     }

@@ -76,3 +76,13 @@ fn a_listing_runs_nothing() {
     assert!(calls.borrow().is_empty());
     assert_eq!(String::from_utf8(out).unwrap(), "first\n    (a test)\n");
 }
+
+#[test]
+fn the_environment_reaches_the_programs_of_steps() {
+    let check = Action::Run(Invocation::new("sh", "-c").argument(r#"test "$GIVEN_BY_THE_SUITE" = yes"#));
+    let steps = [Step { name: "environment", actions: vec![check] }];
+    let mut context = Context::new(".".into());
+    assert!(!run(&steps, &mut context, &mut Vec::new()).unwrap());
+    let mut context = context.environment("GIVEN_BY_THE_SUITE", "yes");
+    assert!(run(&steps, &mut context, &mut Vec::new()).unwrap());
+}
