@@ -164,5 +164,12 @@ static SRGB_TO_LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
     })
 });
 
+/// The code whose light is nearest to `linear`; what is outside [0, 1], or not a number, gets the nearer end, or 0.
+pub(crate) fn srgb_code(linear: f32) -> u8 {
+    let above = SRGB_TO_LINEAR.partition_point(|&light| light <= linear).clamp(1, 255);
+    let (low, high) = (SRGB_TO_LINEAR[above - 1], SRGB_TO_LINEAR[above]);
+    (if high - linear < linear - low { above } else { above - 1 }) as u8
+}
+
 #[cfg(test)]
 mod tests;

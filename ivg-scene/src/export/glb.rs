@@ -33,7 +33,7 @@ const NEAR_PLANE: f64 = 0.01;
 /// matrices to f32, which at 10^6 m from the origin is 6 cm. glTF wants matrices without shear; one with shear is written
 /// all the same.
 ///
-/// What glTF cannot say: where a material lets light through, its base colour is the colour of the transmission, and
+/// Colours of vertices are left out: other readers would multiply the materials by them. What glTF cannot say: where a material lets light through, its base colour is the colour of the transmission, and
 /// the diffuse albedo that is read back is that times the share not let through; a layer that mirrors becomes metal. Meshes without triangles are left out,
 /// their nodes stay. A scene without nodes, lights and camera
 /// becomes a file without a glTF scene.

@@ -15,6 +15,18 @@ fn codes_are_decoded_by_the_srgb_curve() {
 }
 
 #[test]
+fn light_gets_the_nearest_code() {
+    for code in 0..=255u8 {
+        let light = SRGB_TO_LINEAR[usize::from(code)];
+        assert_eq!(srgb_code(light), code);
+        let next = SRGB_TO_LINEAR[usize::from(code.saturating_add(1))];
+        assert_eq!(srgb_code(light + 0.49 * (next - light)), code);
+        assert_eq!(srgb_code(light + 0.51 * (next - light)), code.saturating_add(1));
+    }
+    assert_eq!([-1.0, 2.0, f32::INFINITY, f32::NEG_INFINITY, f32::NAN].map(srgb_code), [0, 255, 255, 0, 0]);
+}
+
+#[test]
 fn lookup_is_bilinear_in_linear_light_and_repeats() {
     let t = texture(2, 1, &[[0, 0, 0], [255, 255, 255]]);
     assert_eq!(t.sample(Vec2::new(0.25, 0.5)), Vec3::ZERO);

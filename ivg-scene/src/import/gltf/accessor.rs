@@ -72,6 +72,14 @@ impl<'a> Data<'a> {
         Ok(values)
     }
 
+    /// The values of an accessor of colours, with three components or four: linear RGB and alpha, which is 1 where it is missing.
+    pub(super) fn colours(&self, index: usize) -> Result<Vec<[f32; 4]>, SceneError> {
+        match self.layout(index)?.components {
+            3 => Ok(self.values(index)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()),
+            _ => self.values(index),
+        }
+    }
+
     /// The values of an accessor of vertex indices.
     pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, SceneError> {
         let layout = self.layout(index)?;

@@ -9,7 +9,11 @@ use glam::{DVec3, Vec2, Vec3};
 use super::accessor::Data;
 use super::material::Coordinates;
 use crate::geometry::repair_normals;
+use crate::material::srgb_code;
 use crate::{Material, Mesh, Scene, SceneError, Unsupported};
+
+/// The colour of vertices of primitives without colours, in a mesh where others have them.
+const WHITE: [u8; 4] = [255; 4];
 
 /// Adds all meshes to the scene, index by index as in the file.
 pub(super) fn read(
@@ -26,6 +30,7 @@ pub(super) fn read(
             mesh: Mesh { name, ..Mesh::default() },
             with_normals: false,
             with_uvs: false,
+            with_colours: false,
             shared: HashMap::new(),
             default_material,
         };
@@ -64,9 +69,10 @@ struct Builder<'a> {
     mesh: Mesh,
     with_normals: bool,
     with_uvs: bool,
+    with_colours: bool,
     /// First vertex and vertex count of attributes that several primitives share, by accessors and material where that
     /// matters to the texture coordinates.
-    shared: HashMap<[Option<usize>; 4], (u32, u32)>,
+    shared: HashMap<[Option<usize>; 5], (u32, u32)>,
     default_material: u32,
 }
 
@@ -79,11 +85,12 @@ impl Builder<'_> {
         let moved = place.linear != Coordinates::default().linear || place.offset != Vec2::ZERO;
         let normal = attribute(Semantic::Normals);
         let position = attribute(Semantic::Positions);
-        let key = [position, normal, uv, material.filter(|_| moved && uv.is_some())];
+        let colour = attribute(Semantic::Colors(0));
+        let key = [position, normal, uv, colour, material.filter(|_| moved && uv.is_some())];
         let (base, count) = match self.shared.get(&key) {
             Some(known) => *known,
             None => {
-                let added = self.vertices(position, normal, uv, &place)?;
+                let added = self.vertices([position, normal, uv, colour], &place)?;
                 self.shared.insert(key, added);
                 added
             }
@@ -117,12 +124,10 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Adds the vertices of a primitive; returns the first one's index and their number.
+    /// Adds the vertices of a primitive, of which these are the accessors; returns the first one's index and their number.
     fn vertices(
         &mut self,
-        position: Option<usize>,
-        normal: Option<usize>,
-        uv: Option<usize>,
+        [position, normal, uv, colour]: [Option<usize>; 4],
         place: &Coordinates,
     ) -> Result<(u32, u32), SceneError> {
         let bad = |what: &str| SceneError::object("mesh", &self.mesh.name, what);
@@ -130,8 +135,11 @@ impl Builder<'_> {
         let positions = self.data.values::<3>(position)?;
         let normals = normal.map(|n| self.data.values::<3>(n)).transpose()?;
         let uvs = uv.map(|t| self.data.values::<2>(t)).transpose()?;
+        let colours = colour.map(|c| self.data.colours(c)).transpose()?;
         let count = positions.len();
-        for other in [normals.as_ref().map(Vec::len), uvs.as_ref().map(Vec::len)].into_iter().flatten() {
+        let lengths =
+            [normals.as_ref().map(Vec::len), uvs.as_ref().map(Vec::len), colours.as_ref().map(Vec::len)];
+        for other in lengths.into_iter().flatten() {
             if other != count {
                 return Err(bad(&format!("attributes of {count} and {other} vertices in one primitive")));
             }
@@ -143,6 +151,7 @@ impl Builder<'_> {
         self.mesh.positions.extend(positions.into_iter().map(Vec3::from_array));
         self.with_normals |= normals.is_some();
         self.with_uvs |= uvs.is_some();
+        self.with_colours |= colours.is_some();
         // Zero marks a normal that is computed in the end. A normal that is not finite stays, for the check to name it.
         let unit = |n: [f32; 3]| {
             let n = Vec3::from_array(n);
@@ -157,6 +166,14 @@ impl Builder<'_> {
             Some(uvs) => self.mesh.uvs.extend(uvs.into_iter().map(moved)),
             None => self.mesh.uvs.resize(base + count, Vec2::ZERO),
         }
+        // Linear in glTF (2.0, section 3.7.2.1).
+        let codes = |[r, g, b, alpha]: [f32; 4]| {
+            [srgb_code(r), srgb_code(g), srgb_code(b), (alpha * 255.0).round() as u8]
+        };
+        match colours {
+            Some(colours) => self.mesh.colours.extend(colours.into_iter().map(codes)),
+            None => self.mesh.colours.resize(base + count, WHITE),
+        }
         Ok((base as u32, count as u32))
     }
 
@@ -168,6 +185,9 @@ impl Builder<'_> {
         }
         if !self.with_uvs {
             self.mesh.uvs.clear();
+        }
+        if !self.with_colours {
+            self.mesh.colours.clear();
         }
         self.mesh
     }

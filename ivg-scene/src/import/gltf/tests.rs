@@ -64,8 +64,52 @@ fn read_json(document: &Value) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
+/// A document of [`triangle`] whose vertices have colours, as bytes of 0 to 1.
+fn coloured(kind: &str, bytes: &[u8]) -> Value {
+    let mut document = triangle();
+    let mut add = |list: &str, value| document[list].as_array_mut().expect("a list").push(value);
+    add("buffers", json!({ "byteLength": bytes.len(), "uri": uri(bytes) }));
+    add("bufferViews", json!({ "buffer": 1, "byteLength": bytes.len() }));
+    add(
+        "accessors",
+        json!({ "bufferView": 4, "componentType": 5121, "normalized": true, "count": 3, "type": kind }),
+    );
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 4.into();
+    document
+}
+
 fn refused(document: &Value) -> String {
     read_json(document).expect_err("refused").to_string()
+}
+
+#[test]
+fn colours_of_vertices_become_srgb() {
+    // 55 of 255 is 0.2157 of the light, which is code 128; 128 of 255 is 0.502, code 188 (IEC 61966-2-1).
+    let scene = read_json(&coloured("VEC4", &[255, 0, 55, 128, 128, 55, 0, 255, 0, 0, 0, 0])).expect("valid");
+    assert_eq!(scene.meshes[0].colours, [[255, 0, 128, 128], [188, 128, 0, 255], [0, 0, 0, 0]]);
+    let document = coloured("VEC3", &[255, 0, 55, 0, 128, 55, 0, 255, 0]);
+    // Three bytes do not start at multiples of four, as glTF asks for; readers are free to take them.
+    let scene = read_json(&document).expect("valid");
+    assert_eq!(scene.meshes[0].colours, [[255, 0, 128, 255], [0, 188, 128, 255], [0, 255, 0, 255]]);
+    assert!(read_json(&triangle()).expect("valid").meshes[0].colours.is_empty());
+}
+
+#[test]
+fn vertices_of_a_primitive_without_colours_are_white_beside_others() {
+    let mut document = coloured("VEC4", &[0; 12]);
+    let mut plain = document["meshes"][0]["primitives"][0].clone();
+    plain["attributes"].as_object_mut().expect("an object").remove("COLOR_0");
+    document["meshes"][0]["primitives"].as_array_mut().expect("a list").push(plain);
+    let scene = read_json(&document).expect("valid");
+    assert_eq!(scene.meshes[0].colours, [[[0; 4]; 3], [[255; 4]; 3]].concat());
+}
+
+#[test]
+fn colours_that_do_not_fit_are_refused() {
+    assert!(refused(&coloured("VEC2", &[0; 12])).contains("accessors[4] has 2 components instead of 4"));
+    let mut document = coloured("VEC4", &[0; 12]);
+    document["accessors"][4]["count"] = 2.into();
+    assert!(refused(&document).contains("attributes of 3 and 2 vertices"), "{}", refused(&document));
 }
 
 #[test]
