@@ -1,7 +1,8 @@
 //! Hard cases of ordering, each by name, and what must hold of any order.
 
 use pmesh_format::{
-    EncodeOptions, IndexedMesh, Limits, ProgressiveMesh, Replay, check_level, decode_all, encode,
+    EncodeOptions, IndexedMesh, Limits, Mode, PacketSize, Positions, ProgressiveMesh, Replay, check_level,
+    encode,
 };
 
 use crate::{BuildError, BuildOptions, BuildReport, Cost, build};
@@ -32,24 +33,66 @@ fn built(mesh: &IndexedMesh, options: &BuildOptions) -> (ProgressiveMesh, BuildR
     (progressive, report)
 }
 
-/// Writes the mesh, reads it back, and checks `count` levels spread over all of them, with both ends.
+/// Writes the mesh raw and coded, reads it back, and checks `count` levels spread over all of them, with both ends: the raw ones
+/// are those of the tables, all are valid, and the whole ones of coded files have the faces of the tables where they were.
 fn check_levels(progressive: &ProgressiveMesh, count: usize) {
-    let file = encode(progressive, &EncodeOptions::default()).unwrap();
-    let mut replay = Replay::default();
-    decode_all(&file, &Limits::default(), |event| {
-        replay.accept(&event).unwrap();
-    })
-    .unwrap();
+    let mut replay = replayed(progressive, &EncodeOptions::default());
+    for level in spread(&replay, count) {
+        replay.set_level(level).unwrap();
+        assert_eq!(replay.mesh(), progressive.level(level), "level {level}");
+        assert!(level == 0 || replay.face_count() > 0, "level {level} has no face");
+    }
+    for positions in [Positions::F32, Positions::Quantised(12)] {
+        let mut replay = replayed(progressive, &coded(positions));
+        let ends = replay.header().packets.iter().map(|entry| entry.vertices.end);
+        let ends: Vec<_> = ends.chain([progressive.base_vertices]).collect();
+        for level in spread(&replay, count).chain(ends) {
+            replay.set_level(level).unwrap();
+            let mesh = replay.mesh();
+            assert_eq!(mesh.positions.len(), level as usize);
+            check_level(&mesh).unwrap_or_else(|fault| panic!("level {level}: {fault}"));
+            if replay.header().is_whole_level(level) {
+                let expected = progressive.level(level);
+                assert_eq!(mesh.triangles.len(), expected.triangles.len(), "level {level}");
+                if positions == Positions::F32 {
+                    assert!(places(&mesh) == places(&expected), "level {level} has other faces");
+                }
+            }
+        }
+    }
+}
+
+/// Coded in small packets.
+fn coded(positions: Positions) -> EncodeOptions {
+    let packets = PacketSize::Growing { first: 8, percent: 30, most: 4096 };
+    EncodeOptions { mode: Mode::Coded, positions, packets, ..EncodeOptions::default() }
+}
+
+/// The mesh, written and read back.
+fn replayed(progressive: &ProgressiveMesh, options: &EncodeOptions) -> Replay {
+    let file = encode(progressive, options).unwrap();
+    Replay::from_file(&file, &Limits::default()).unwrap()
+}
+
+/// So many levels of the file, with both ends.
+fn spread(replay: &Replay, count: usize) -> impl Iterator<Item = u32> + use<> {
     let levels = replay.levels().unwrap();
     let span = (levels.end() - levels.start()) as usize;
-    for k in 0..count {
-        let level = levels.start() + (span * k / (count - 1).max(1)) as u32;
-        replay.set_level(level).unwrap();
-        let mesh = replay.mesh();
-        assert_eq!(mesh.positions.len(), level as usize);
-        check_level(&mesh).unwrap_or_else(|fault| panic!("level {level}: {fault}"));
-        assert!(level == 0 || !mesh.triangles.is_empty(), "level {level} has no face");
-    }
+    (0..count).map(move |k| levels.start() + (span * k / (count - 1).max(1)) as u32)
+}
+
+/// Material and places of the corners of each face, sorted; the least corner first, so that only winding and places count.
+fn places(mesh: &IndexedMesh) -> Vec<(u16, [[u32; 3]; 3])> {
+    let mut faces: Vec<_> = (0..mesh.triangles.len())
+        .map(|i| {
+            let mut corners = mesh.triangle_vertices(i).map(|v| mesh.positions[v as usize].map(f32::to_bits));
+            let least = (0..3).min_by_key(|&c| corners[c]).unwrap_or_default();
+            corners.rotate_left(least);
+            (mesh.material(i), corners)
+        })
+        .collect();
+    faces.sort_unstable();
+    faces
 }
 
 /// How many faces have the same three vertices as an earlier one.

@@ -111,7 +111,8 @@ impl ProgressiveMesh {
     }
 
     /// The mesh at `level` vertices by mapping every face of the full mesh through the tables: slow and obvious, the
-    /// oracle of [`Replay`](crate::Replay).
+    /// oracle of [`Replay`](crate::Replay). A coded file has this level where a packet ends; inside packets its splits are
+    /// sorted by parent (PMESH-COD-01, -LVL-06).
     ///
     /// # Panics
     /// If `level` is not in `base_vertices..=positions.len()` or the tables are not valid.

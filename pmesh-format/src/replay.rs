@@ -147,7 +147,9 @@ impl Replay {
         Ok(())
     }
 
-    /// Goes to the level of `level` vertices.
+    /// Goes to the level of `level` vertices. Every level is a valid mesh (PMESH-LVL-02), whichever way it is reached; which are
+    /// *whole*, and so free of faces on the same vertices wherever the writer kept to PMESH-LVL-03, [`Header::is_whole_level`]
+    /// says: all of a raw file, and of a coded one the ends of packets.
     ///
     /// # Errors
     ///

@@ -142,8 +142,19 @@ fn two_components_touching_in_a_vertex() {
 /// vertices, so it has to wait.
 #[test]
 fn no_face_falls_onto_another() {
-    let mut mesh = grid(20, bumps);
-    for face in (0..722).step_by(60) {
+    let (progressive, report) = built(&with_pyramids(20), &default());
+    assert_eq!((report.vertices, report.nonmanifold_edges), (413, 37));
+    check_levels(&progressive, 100);
+    // Further down nothing else is left to take away.
+    for level in (60..=413).rev() {
+        assert_eq!(coincident_faces(&progressive.level(level)), 0, "level {level}");
+    }
+}
+
+/// A height field with a small pyramid on every 60th face.
+fn with_pyramids(side: u32) -> IndexedMesh {
+    let mut mesh = grid(side, bumps);
+    for face in (0..mesh.triangles.len()).step_by(60) {
         let [a, b, c] = mesh.triangles[face];
         let [p, q, r] = mesh.triangles[face].map(|v| mesh.positions[v as usize]);
         let top = mesh.positions.len() as u32;
@@ -152,13 +163,29 @@ fn no_face_falls_onto_another() {
         mesh.wedges.vertices.push(top);
         mesh.triangles.extend([[a, b, top], [b, c, top], [c, a, top]]);
     }
-    let (progressive, report) = built(&mesh, &default());
-    assert_eq!((report.vertices, report.nonmanifold_edges), (413, 37));
-    check_levels(&progressive, 100);
-    // Further down nothing else is left to take away.
-    for level in (60..=413).rev() {
-        assert_eq!(coincident_faces(&progressive.level(level)), 0, "level {level}");
+    mesh
+}
+
+/// The ends of coded packets are levels of the order; those inside a packet are sorted by parent, and there faces fall onto
+/// others (PMESH-LVL-06).
+#[test]
+fn whole_levels_of_coded_files_have_no_coincident_faces() {
+    let noise = grid(60, |x, y| 0.05 * (7919.0 * x + 104_729.0 * y).sin());
+    let (progressive, _) = built(&noise, &default());
+    let mut replay = replayed(&progressive, &coded(Positions::Quantised(14)));
+    let (mut whole, mut inside) = (0, 0);
+    for level in 36..=replay.max_level() {
+        replay.set_level(level).unwrap();
+        let mesh = replay.mesh();
+        check_level(&mesh).unwrap();
+        let coincident = coincident_faces(&mesh) > 0;
+        if replay.header().is_whole_level(level) {
+            assert!(!coincident, "level {level}");
+            whole += 1;
+        }
+        inside += usize::from(coincident);
     }
+    assert!(whole >= 16 && inside > 0, "{whole} whole levels; {inside} inside packets with coincident faces");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Which level to show: by what it may cost in accuracy or in faces.
 
 use crate::header::Header;
+use crate::storage::Mode;
 
 use super::Replay;
 
@@ -19,6 +20,18 @@ impl Header {
             Some(entry) => entry.vertices.start.saturating_add(1).max(self.base_vertices),
             None => self.vertex_count,
         }
+    }
+
+    /// Whether the level of `level` vertices is in the file and *whole* (PMESH-LVL-06): every one of a raw file; of a coded file
+    /// the coarsest and the last of each packet. In between, coded packets bring their vertices sorted by place: those levels are
+    /// valid meshes too, but finer in one place than in another, and two of their faces may lie on the same vertices.
+    #[must_use]
+    pub fn is_whole_level(&self, level: u32) -> bool {
+        let Some(packet) = self.packet_of_level(level) else {
+            return self.vertex_count == 0 && level == 0;
+        };
+        let ends = self.packets.get(packet as usize).map(|entry| entry.vertices.end);
+        self.mode == Mode::Raw || level == self.base_vertices || ends == Some(level)
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use pmesh_format::Replay;
+use pmesh_format::{Mode, Replay};
 use serde_json::{Value, json};
 
 use crate::Failure;
@@ -15,7 +15,10 @@ mod tests;
 /// Faces of a level whose direction is held against the original surface, at most.
 const SAMPLED_FACES: usize = 1000;
 
-/// Levels of fewer vertices than this share may have coincident faces.
+/// The fault that coarse levels and those inside coded packets may have.
+const COINCIDENT: &str = "two faces have the same corners";
+
+/// Levels of fewer vertices than this share may have coincident faces: a closed surface ends as two opposite triangles.
 const COARSE: f64 = 0.01;
 
 /// What levels are asked for.
@@ -27,49 +30,73 @@ pub(crate) struct Choice {
     pub(crate) seed: u64,
 }
 
-/// Goes to random levels in random order, half of them even in their number of vertices, half in its logarithm. Each must
-/// have indices below its number of vertices, distinct corners, and, from 1 % of all vertices on, no two faces with the same
-/// corners. Centre and normal of some faces go to `out`, with the number of the level, as rows of seven floats.
+/// Goes to random levels in random order, half of them even in their number of vertices, half in its logarithm; of coded files
+/// also to the coarsest level and to the end of each packet. Each must have indices below its number of vertices and distinct
+/// corners, and the whole ones (PMESH-LVL-06: all of a raw file, those ends of a coded one), from 1 % of all vertices on, no two
+/// faces with the same corners; of the others it is only counted. Centre and normal of some faces of the random levels go to
+/// `out`, with the number of the level, as rows of seven floats.
 pub(crate) fn check(replay: &mut Replay, choice: Choice, out: &Path) -> Result<Value, Failure> {
     let levels = replay.levels().ok_or("the file has no level")?;
     let (low, high) = (f64::from(*levels.start()), f64::from(*levels.end()));
     let mut random = Random(choice.seed);
     let mut rows = Vec::new();
-    let mut faulty = BTreeMap::new();
+    let mut found = Found::default();
     let mut visited = Vec::new();
     for k in 0..choice.count {
         let u = random.unit();
         let wanted = if k % 2 == 0 { low + u * (high - low) } else { low * (high / low).powf(u) };
         let level = (wanted.round() as u32).clamp(*levels.start(), *levels.end());
-        replay.set_level(level)?;
         visited.push(level);
-        let shown = Level {
-            vertices: level,
-            wedges: replay.wedge_count(),
-            coarse: f64::from(level) < COARSE * f64::from(replay.header().vertex_count),
-            faces: replay.indices(),
-        };
-        let found = faults(&shown, |wedge| replay.wedge_vertex(wedge));
-        for fault in found {
-            faulty.entry(fault).or_insert_with(Vec::new).push(level);
-        }
+        found.look(replay, level)?;
         sample(replay, &mut random, &mut rows);
+    }
+    let header = replay.header();
+    let ends = header.packets.iter().map(|entry| entry.vertices.end).chain([*levels.start()]);
+    let ends: Vec<_> = ends.filter(|_| header.mode == Mode::Coded).collect();
+    for &level in &ends {
+        found.look(replay, level)?;
     }
     let bytes: Vec<u8> = rows.iter().flat_map(|x: &f32| x.to_le_bytes()).collect();
     fs::write(out, bytes)?;
     visited.sort_unstable();
     Ok(json!({
         "levels": choice.count, "lowest": visited.first(), "highest": visited.last(),
-        "median": visited.get(visited.len() / 2), "faults": faulty,
+        "median": visited.get(visited.len() / 2), "ends": ends.len(), "faults": found.faulty,
+        "coincident_inside": found.inside,
     }))
+}
+
+/// What the levels looked at have.
+#[derive(Default)]
+struct Found {
+    /// Levels with a fault, by its name.
+    faulty: BTreeMap<&'static str, Vec<u32>>,
+    /// Levels inside coded packets that have two faces on the same corners, which nobody promises them not to have.
+    inside: u32,
+}
+
+impl Found {
+    /// Goes to a level and looks at it.
+    fn look(&mut self, replay: &mut Replay, level: u32) -> Result<(), Failure> {
+        replay.set_level(level)?;
+        let shown = Level { vertices: level, wedges: replay.wedge_count(), faces: replay.indices() };
+        let whole = replay.header().is_whole_level(level);
+        let coarse = f64::from(level) < COARSE * f64::from(replay.header().vertex_count);
+        for fault in faults(&shown, |wedge| replay.wedge_vertex(wedge)) {
+            if fault != COINCIDENT || (whole && !coarse) {
+                self.faulty.entry(fault).or_default().push(level);
+            } else {
+                self.inside += u32::from(!whole && !coarse);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A level, as far as its validity is concerned.
 struct Level<'a> {
     vertices: u32,
     wedges: u32,
-    /// Coincident faces are allowed: a closed surface ends as two opposite triangles.
-    coarse: bool,
     /// Wedges of the faces.
     faces: &'a [[u32; 3]],
 }
@@ -91,8 +118,8 @@ fn faults(level: &Level<'_>, vertex_of: impl Fn(u32) -> u32) -> Vec<&'static str
         found.push("two corners of a face are equal");
     }
     faces.sort_unstable();
-    if !level.coarse && faces.windows(2).any(|pair| pair[0] == pair[1]) {
-        found.push("two faces have the same corners");
+    if faces.windows(2).any(|pair| pair[0] == pair[1]) {
+        found.push(COINCIDENT);
     }
     found
 }

@@ -1,5 +1,10 @@
+use alloc::vec;
+use alloc::vec::Vec;
+
 use crate::encode::{EncodeOptions, encode};
+use crate::progressive::ProgressiveMesh;
 use crate::replay::Replay;
+use crate::storage::Mode;
 use crate::tests::{Kind, header_of, random_mesh, replay_all, some_meshes};
 
 #[test]
@@ -53,4 +58,21 @@ fn only_levels_that_have_arrived_are_named() {
     let packet = &file[range.start as usize..range.end as usize];
     replay.apply(&crate::decode::decode_packet(&header, 0, packet).unwrap()).unwrap();
     assert_eq!((replay.level_of_error(0.0), replay.level_of_faces(u32::MAX)), (Some(10), Some(10)));
+}
+
+#[test]
+fn every_level_of_a_raw_file_is_whole_and_the_ends_of_coded_packets() {
+    let mesh = random_mesh(4, Kind { vertices: 30, seams: false, materials: false });
+    let whole = |mode| {
+        let file = encode(&mesh, &EncodeOptions { mode, ..EncodeOptions::fixed(10) }).unwrap();
+        let header = header_of(&file);
+        (0..=40).filter(|&level| header.is_whole_level(level)).collect::<Vec<_>>()
+    };
+    assert_eq!(whole(Mode::Raw), (mesh.base_vertices..=30).collect::<Vec<_>>());
+    let mut ends = vec![mesh.base_vertices, 10, 20, 30];
+    ends.dedup();
+    assert_eq!(whole(Mode::Coded), ends);
+
+    let empty = encode(&ProgressiveMesh::default(), &EncodeOptions::default()).unwrap();
+    assert!(header_of(&empty).is_whole_level(0) && !header_of(&empty).is_whole_level(1));
 }
