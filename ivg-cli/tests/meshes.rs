@@ -282,6 +282,27 @@ fn a_level_is_chosen_by_vertices_by_faces_or_by_error() {
 }
 
 #[test]
+fn a_level_inside_a_coded_packet_is_written_with_a_note() {
+    let place = Workplace::new();
+    place.write("sheet.obj", sheet(30).as_bytes());
+    for (mode, levels) in
+        [("coded", [("500", false), ("510", true)]), ("raw", [("500", false), ("510", false)])]
+    {
+        place.ok(&["mesh", "sheet.obj", "-o", "sheet.pmesh", "--packet", "50", "--mode", mode]);
+        for (level, noted) in levels {
+            let output = place.run(&["extract", "sheet.pmesh", "-o", "level.obj", "--level", level]);
+            assert!(output.status.success());
+            assert_eq!(lines(&place, "level.obj", "v ").to_string(), level);
+            let said = text(&output.stderr);
+            assert_eq!(said.contains("levels 500 and 550 are whole"), noted, "{mode}, level {level}: {said}");
+        }
+        // By a stored error nothing is said.
+        let output = place.run(&["extract", "sheet.pmesh", "-o", "level.obj", "--error", "1"]);
+        assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
+    }
+}
+
+#[test]
 fn info_tells_how_a_mesh_is_stored() {
     let place = Workplace::new();
     place.write("sheet.obj", sheet(30).as_bytes());

@@ -98,7 +98,8 @@ impl LocalScene {
     }
 
     /// The level of mesh `index` of [`Manifest::meshes`] that has `share` of its vertices, in \[0, 1\], or the highest that has
-    /// arrived if that is lower; `None` before its first packet. See [`crate::Session::level_at`].
+    /// arrived if that is lower; `None` before its first packet. Of a coded mesh it is the finest that the packet of these
+    /// vertices brings, which is whole (PMESH-LVL-06).
     #[must_use]
     pub fn level_at(&self, index: usize, share: f64) -> Option<u32> {
         self.assembly.level_at(index, share)

@@ -100,7 +100,7 @@ pub(crate) fn nearest_level(replay: &Replay, wanted: u32) -> Option<u32> {
 }
 
 /// The level of that share of all vertices, in \[0, 1\], or the highest that has arrived if that is lower; of a coded mesh the
-/// last one of its packet: in between, coded packets are finer in one place than in another (PMESH-COD-01).
+/// last one of its packet: in between, levels are not whole (PMESH-LVL-06).
 pub(crate) fn level_of_share(replay: &Replay, share: f64) -> Option<u32> {
     let header = replay.header();
     let wanted = (share.clamp(0.0, 1.0) * f64::from(header.vertex_count)).ceil() as u32;

@@ -126,7 +126,9 @@ pub(crate) struct ExtractArguments {
     /// Use the first N bytes of the file only: what a client knows then.
     #[arg(long, value_name = "N")]
     pub(crate) bytes: Option<u64>,
-    /// Number of vertices of the mesh [default: as many as there are].
+    /// Number of vertices of the mesh [default: as many as there are]. Any number from that of the coarsest level on; inside a
+    /// packet of a coded file (`ivg info` lists where packets end) a level is a valid mesh, but finer in one place than in
+    /// another, and two of its faces may lie on the same vertices. Raw files are even at every level.
     #[arg(long, value_name = "N", group = "chosen_level")]
     pub(crate) level: Option<u32>,
     /// The coarsest level whose stored error is at most so many metres.

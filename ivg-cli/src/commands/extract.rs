@@ -3,7 +3,7 @@ use std::process::ExitCode;
 use ivg_format::{Quantity, Values};
 use ivg_grid::{FillOptions, IrradianceGrid};
 use ivg_scene::export;
-use pmesh_format::{IndexedMesh, Replay, Wedges};
+use pmesh_format::{Header, IndexedMesh, Replay, Wedges};
 
 use crate::args::ExtractArguments;
 use crate::failure::Failure;
@@ -114,6 +114,10 @@ fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
         return Err(Failure::file(&arguments.file, what));
     }
     replay.set_level(level).map_err(|error| Failure::file(&arguments.file, error))?;
+    // A stored error names levels one split behind the end of a packet: nothing to speak of.
+    if arguments.error.is_none() && !replay.header().is_whole_level(level) {
+        eprintln!("ivg: note: {}", inside_a_packet(replay.header(), level));
+    }
     let mesh = replay.mesh();
     let name =
         arguments.file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
@@ -155,6 +159,17 @@ fn wanted_level(arguments: &ExtractArguments, replay: &Replay) -> Option<u32> {
     let by_error = || arguments.error.and_then(|error| replay.level_of_error(error));
     let by_faces = || arguments.faces.and_then(|faces| replay.level_of_faces(faces));
     arguments.level.or_else(by_error).or_else(by_faces)
+}
+
+/// What a level inside a coded packet lacks (PMESH-LVL-06), for people, and which levels near it lack nothing.
+fn inside_a_packet(header: &Header, level: u32) -> String {
+    let ends = || header.packets.iter().map(|entry| entry.vertices.end).chain([header.base_vertices]);
+    let below = ends().filter(|&end| end < level).max().unwrap_or_default();
+    let above = ends().filter(|&end| end > level).min().unwrap_or_default();
+    format!(
+        "level {level} lies inside a coded packet: it is finer in one place than in another, and faces may lie on each \
+         other; levels {below} and {above} are whole"
+    )
 }
 
 /// Which colours .obj cannot hold, for people: it has one a position, without alpha. Nothing if there is no such colour.
