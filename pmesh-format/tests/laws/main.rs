@@ -5,5 +5,6 @@ mod files;
 mod hostile;
 mod judgement;
 mod levels;
+mod shapes;
 mod splits;
 mod writer;
