@@ -71,7 +71,7 @@ fn has_test(source: &str, name: &str) -> bool {
 }
 
 /// What a clause names as its tests, each of which must exist.
-fn check_test(name: &str) -> Result<(), String> {
+pub(super) fn check_test(name: &str) -> Result<(), String> {
     match name.split_once("::") {
         Some((file, function)) => {
             let source =

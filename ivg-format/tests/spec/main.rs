@@ -5,6 +5,7 @@
 mod aids;
 mod clauses;
 mod examples;
+mod hard_cases;
 mod orders;
 mod tables;
 mod values;

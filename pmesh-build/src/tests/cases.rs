@@ -108,6 +108,7 @@ fn duplicates_of_another_material_are_kept() {
     let (progressive, report) = built(&mesh, &default());
     assert_eq!((report.faces, report.dropped_duplicate), (3, 1));
     assert_eq!(progressive.materials, [0, 0, 1]);
+    check_levels(&progressive, 2);
 }
 
 #[test]
@@ -480,6 +481,7 @@ fn flips_and_slivers_are_avoided() {
         [x + by * (7919.0 * x + 31.0 * y).sin(), y + by * (104_729.0 * y + 17.0 * x).sin(), z]
     });
     let (progressive, _) = built(&mesh, &default());
+    check_levels(&progressive, 20);
     for level in [900, 700, 400, 200, 100] {
         let mesh = progressive.level(level);
         for triangle in &mesh.triangles {
@@ -499,12 +501,14 @@ fn a_scene_at_a_million_metres() {
     assert_eq!((&here.collapse, &here.errors), (&there.collapse, &there.errors));
     assert_eq!(there.origin, [1e6, -1e6, 1e6]);
     assert!(!report.precision_lost());
+    check_levels(&there, 20);
 }
 
 /// A plane in a regular grid of exact coordinates: all vertices of a border cost the same. The lowest goes first.
 #[test]
 fn coplanar_ties_go_to_the_lowest_index() {
     let (progressive, _) = built(&grid(9, |_, _| 0.0), &default());
+    check_levels(&progressive, 20);
     // Vertex 0 is a corner; vertex 1 has half of the area around it that one inside has.
     assert_eq!(progressive.positions.last(), Some(&[0.125, 0.0, 0.0]));
 }

@@ -63,6 +63,7 @@ fn a_border_between_materials_stays_where_it_is() {
     mesh.materials = (0..mesh.triangles.len()).map(|i| u16::from((i / 2) % 20 >= 10)).collect();
     let (progressive, report) = built(&mesh, &BuildOptions::default());
     assert_eq!((report.seam_edges, report.vertices, report.wedges), (20, 441, 441));
+    check_levels(&progressive, 20);
     for level in [300, 100, 30, 6] {
         let mesh = progressive.level(level);
         for i in 0..mesh.triangles.len() {
@@ -95,10 +96,11 @@ fn a_curved_border_between_materials_keeps_its_shape() {
     };
     let (progressive, _) = built(&mesh, &BuildOptions::default());
     let full = area(&progressive.full());
-    // Four vertices are those of the square. A polygon of 11 corners in a circle lacks 5.4 % of its area; corners within
-    // half the diagonal of a cell of 1/40 off the circle of 0.3, on average half of that, make up to 6 % more.
+    // Four vertices are those of the square, twelve stand on the border, two of them beside another one: nothing but their
+    // own edges tells them apart. A polygon of 10 corners in a circle lacks 6.5 % of its area; corners within half the
+    // diagonal of a cell of 1/40 off the circle of 0.3, on average half of that, make up to 6 % more.
     let coarse = area(&progressive.level(16));
-    assert!((coarse - full).abs() < 0.114 * full, "{coarse} of {full}");
+    assert!((coarse - full).abs() < 0.125 * full, "{coarse} of {full}");
 }
 
 #[test]
