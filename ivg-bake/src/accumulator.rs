@@ -10,6 +10,7 @@ use ivg_scene::{EffectPlan, FlatScene, Scene};
 
 use crate::accumulate::Total;
 use crate::bake::lights;
+use crate::centring::{Centring, Place};
 use crate::estimate::Estimate;
 use crate::estimate::held::Held;
 use crate::estimate::track_length::{self, RadianceTracks, VectorTracks};
@@ -19,7 +20,9 @@ use crate::stage::Effects;
 use crate::tally::{PHOTONS_A_PIECE, Photons, Tally, stretch};
 use crate::trace::Books;
 use crate::workers::Workers;
-use crate::{BakeError, BakeOptions, BakeResult, BakeStage, BakeStats, BakedLight, Estimator, Monitor};
+use crate::{
+    BakeError, BakeOptions, BakeResult, BakeStage, BakeStats, BakedLight, Estimator, Monitor, Silent,
+};
 
 mod digest;
 mod file;
@@ -48,9 +51,16 @@ pub struct Accumulator {
     head: Head,
     lights: Vec<BakedLight>,
     books: Books,
-    /// Of each vertex: sub-cells that count, validity, blocked edges.
-    vertices: Vec<(u16, u8, u8)>,
+    vertices: Vec<Vertex>,
     sums: Vec<i64>,
+}
+
+/// What a bake knows about a vertex before its first photon.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Vertex {
+    place: Place,
+    validity: u8,
+    blocked_edges: u8,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,8 +120,9 @@ pub fn accumulate(
     let surroundings = ready.surroundings(options.estimator, &workers)?;
     let vertices = (0..ready.cells.len())
         .map(|vertex| {
-            let cells = (surroundings.regions.get(vertex).share() * f64::from(SUB_CELLS)) as u16;
-            (cells, surroundings.validity[vertex], surroundings.blocked_edges[vertex])
+            let (validity, blocked_edges) =
+                (surroundings.validity[vertex], surroundings.blocked_edges[vertex]);
+            Vertex { place: surroundings.centring.places[vertex], validity, blocked_edges }
         })
         .collect();
     let (first, last) = options.first_and_last(flat)?;
@@ -308,29 +319,36 @@ impl Accumulator {
         let total = Total::of(&whole.sums);
         let count = whole.vertices.len();
         let scale = |vertex: usize| {
-            let share = f64::from(whole.vertices[vertex].0) / f64::from(SUB_CELLS);
+            let share = f64::from(whole.vertices[vertex].place.cells) / f64::from(SUB_CELLS);
             (share > 0.0).then(|| each * quantum / (volume * share))
         };
+        let places = whole.vertices.iter().map(|vertex| vertex.place).collect();
+        let centring = Centring { places, count: dims.map(usize::from) };
+        let workers = Workers { threads: 1, monitor: &Silent, total_photons: photons };
         let values: GridValues = match quantity {
-            Quantity::Vectors => (0..count)
-                .map(|v| {
+            Quantity::Vectors => {
+                let value = |v: usize| {
                     scale(v).map_or(HemisphereVectors::default(), |scale| {
                         track_length::vectors_of(&total, count, v, scale)
                     })
-                })
-                .collect::<Vec<_>>()
-                .into(),
-            Quantity::Radiance => (0..count)
-                .map(|v| {
+                };
+                let mut values: Vec<_> = (0..count).map(value).collect();
+                centring.apply(&mut values, &workers)?;
+                values.into()
+            }
+            Quantity::Radiance => {
+                let value = |v: usize| {
                     scale(v).map_or(RadianceHarmonics::default(), |scale| {
                         track_length::radiance_of(&total, v, scale)
                     })
-                })
-                .collect::<Vec<_>>()
-                .into(),
+                };
+                let mut values: Vec<_> = (0..count).map(value).collect();
+                centring.apply(&mut values, &workers)?;
+                values.into()
+            }
         };
-        let validity = whole.vertices.iter().map(|vertex| vertex.1).collect();
-        let blocked = whole.vertices.iter().map(|vertex| vertex.2).collect();
+        let validity = whole.vertices.iter().map(|vertex| vertex.validity).collect();
+        let blocked = whole.vertices.iter().map(|vertex| vertex.blocked_edges).collect();
         let lattice = Lattice::new(dims, first, last)?;
         let grid = IrradianceGrid::from_parts(lattice, values, validity, blocked)?;
         let unit = power / photons as f64 / Books::QUANTA;

@@ -7,7 +7,7 @@ use crate::accuracy::{self, AccuracyReport, Simulated, gathering};
 use crate::dual::Boxes;
 use crate::estimate::Estimate;
 use crate::estimate::face_crossing::FaceCrossing;
-use crate::estimate::held::Held;
+use crate::estimate::held::{Held, Linear};
 use crate::estimate::track_length::{RadianceTracks, VectorTracks};
 use crate::ready::Ready;
 use crate::region::Regions;
@@ -144,6 +144,14 @@ impl Job<'_> {
         self.ready.stage.emitters.total_power() * self.ready.per_area
     }
 
+    /// Makes means over cells the light where the vertices look from. Means over faces are left as they are.
+    pub(crate) fn carry<T: Linear>(&self, means: &mut [T]) -> Result<(), BakeError> {
+        if self.options.estimator != Estimator::TrackLength {
+            return Ok(());
+        }
+        self.surroundings.centring.apply(means, &self.workers)
+    }
+
     /// The vertices that light reaches.
     pub(crate) fn counted(&self) -> impl Iterator<Item = usize> {
         let validity = self.surroundings.validity.iter().enumerate();
@@ -166,7 +174,8 @@ where
     }
     let Traced { sums, books, photons } = tally.finish();
     let power = job.power() / photons as f64;
-    let values = estimate.values(sums, job.ready.cells.len(), power);
+    let mut values = estimate.values(sums, job.ready.cells.len(), power);
+    job.carry(&mut values)?;
     Ok(Simulated { values: values.into(), books, photons, paths: 0, accuracy: None })
 }
 

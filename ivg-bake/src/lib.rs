@@ -5,8 +5,8 @@
 //!                  │
 //!                  ├─► validity, region   what each vertex of the lattice sees, and whether light reaches it
 //!                  │
-//!                  └─► emit ─► trace ─► estimate ─► accumulate ─► IrradianceGrid
-//!                      photons  flights  deposits   exact sums
+//!                  └─► emit ─► trace ─► estimate ─► accumulate ─► centring ─► IrradianceGrid
+//!                      photons  flights  deposits   exact sums    to the vertex
 //! ```
 //!
 //! [`bake()`] makes a grid, [`pilot()`] measures what that will cost, [`reference::Oracle`] is the slow path tracer that
@@ -86,6 +86,7 @@ mod accuracy;
 mod bake;
 #[cfg(any(test, feature = "cases"))]
 pub mod cases;
+mod centring;
 mod dual;
 mod emit;
 mod error;

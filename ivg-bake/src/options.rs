@@ -8,7 +8,8 @@ use crate::stage::bounds;
 /// How the flights of photons are turned into what the vertices hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Estimator {
-    /// Length of the flights through each vertex's dual cell: unbiased for the mean over the cell, the least variance.
+    /// Length of the flights through each vertex's dual cell: unbiased for the mean over the cell, the least variance. Next
+    /// to surfaces the mean is carried from the centre of what the vertex sees to the vertex, with the gradient around it.
     #[default]
     TrackLength,
     /// Crossings of the lattice's faces divided by the cosine (RR-6983 section 3.3, corrected): unbiased for the

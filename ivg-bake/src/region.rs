@@ -63,6 +63,17 @@ impl Mask {
         self.0.iter().map(|word| word.count_ones()).sum()
     }
 
+    /// Sum over the sub-cells that count of twice the distance of their middles from that of the cell, in sub-cells.
+    pub(crate) fn moments(&self) -> [i16; 3] {
+        let mut moments = [0; 3];
+        for at in (0..SUB * SUB * SUB).map(|n| [n % SUB, n / SUB % SUB, n / SUB / SUB]) {
+            if self.contains(at) {
+                moments.iter_mut().zip(at).for_each(|(sum, x)| *sum += 2 * x as i16 + 1 - SUB as i16);
+            }
+        }
+        moments
+    }
+
     /// Whether a sub-cell counts.
     #[inline]
     pub(crate) fn contains(&self, [x, y, z]: [usize; 3]) -> bool {

@@ -24,6 +24,7 @@ use glam::Vec3;
 
 use crate::BakeError;
 use crate::accel::Hit;
+use crate::centring::Centring;
 use crate::dual::Boxes;
 use crate::overlap::{closest_point, triangle_meets_box};
 use crate::region::{FEWEST_SUB_CELLS, Mask, Region, Regions, SUB, SUB_CELLS};
@@ -36,7 +37,7 @@ use crate::workers::{Workers, map};
 const TOO_CLOSE: f32 = 1.0 / 64.0;
 
 /// How far beside, in steps along each axis.
-const ASIDE: f32 = 1.0 / 32.0;
+pub(crate) const ASIDE: f32 = 1.0 / 32.0;
 
 /// Paths that look for light.
 const REACH_PATHS: u32 = 128;
@@ -78,6 +79,8 @@ pub(crate) struct Surroundings {
     pub(crate) blocked_edges: Vec<u8>,
     /// Where each vertex looks from, in bake space.
     pub(crate) eyes: Vec<Vec3>,
+    /// How means over cells become the light at these points.
+    pub(crate) centring: Centring,
 }
 
 /// A vertex's point of view.
@@ -106,7 +109,7 @@ impl Surroundings {
             let counts = view.lit || !any_lit;
             if counts { view.mask.filter_small() } else { Some(Mask::NONE) }
         }));
-        let validity = (0..cells.len())
+        let validity: Vec<u8> = (0..cells.len())
             .map(|vertex| {
                 let share = (regions.get(vertex).share() * f64::from(SUB_CELLS)) as u32;
                 (255 * share.min(FULL_SHARE)).div_ceil(FULL_SHARE) as u8
@@ -131,7 +134,9 @@ impl Surroundings {
             }
             bits
         })?;
-        Ok(Self { regions, validity, blocked_edges, eyes })
+        let valid = |vertex: usize| validity[vertex] > 0;
+        let centring = Centring::new(stage, cells, &regions, &eyes, valid, workers)?;
+        Ok(Self { regions, validity, blocked_edges, eyes, centring })
     }
 
     /// Surroundings in which everything counts: what RR-6983 assumes.
@@ -142,6 +147,7 @@ impl Surroundings {
             validity: vec![255; vertices],
             blocked_edges: vec![0; vertices],
             eyes: (0..vertices).map(|vertex| cells.middle(cells.coords(vertex))).collect(),
+            centring: Centring::even(cells),
         }
     }
 

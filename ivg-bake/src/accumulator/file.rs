@@ -6,9 +6,10 @@ use ivg_wire::{
     read_end, read_record, record_len, seal_header, write_end, write_record,
 };
 
-use super::{Accumulator, Head, Shard};
+use super::{Accumulator, Head, Shard, Vertex};
 use crate::BakedLight;
 use crate::accumulate::MAX_FLIGHTS;
+use crate::centring::Place;
 use crate::estimate::track_length::sums_of;
 use crate::region::SUB_CELLS;
 use crate::trace::{BOOKED_BOUNCES, Books};
@@ -29,7 +30,7 @@ const HEAD_BYTES: usize = 160;
 const SUMS_A_RECORD: usize = 1 << 20;
 
 /// Bytes of a vertex in the record of vertices.
-const VERTEX_BYTES: u64 = 4;
+const VERTEX_BYTES: u64 = 14;
 
 /// Bytes of the books: 76 sums of 16 bytes and the flights.
 const BOOK_BYTES: u64 = 16 * (12 + BOOKED_BOUNCES as u64) + 8;
@@ -131,14 +132,7 @@ impl Accumulator {
     pub fn to_bytes(&self) -> Vec<u8> {
         let head = self.head.to_bytes();
         let (lights, books) = (light_bytes(&self.lights), book_bytes(&self.books));
-        let vertices: Vec<u8> = self
-            .vertices
-            .iter()
-            .flat_map(|&(cells, validity, blocked)| {
-                let [low, high] = cells.to_le_bytes();
-                [low, high, validity, blocked]
-            })
-            .collect();
+        let vertices: Vec<u8> = self.vertices.iter().flat_map(Vertex::to_bytes).collect();
         let content = ContentId::of(&[&head, &lights, &books, &vertices]);
         // Sums differ whenever photons do, and those are in the header.
         let header_bytes = FORMAT.header_bytes;
@@ -398,14 +392,49 @@ fn read_books(bytes: &[u8]) -> Result<Books, AccumulatorError> {
     Ok(books)
 }
 
-fn read_vertices(bytes: &[u8]) -> Result<Vec<(u16, u8, u8)>, AccumulatorError> {
-    let vertices = bytes.as_chunks::<4>().0.iter();
-    let vertices: Vec<_> =
-        vertices.map(|&[low, high, v, b]| (u16::from_le_bytes([low, high]), v, b)).collect();
-    if vertices.iter().any(|&(cells, _, blocked)| u32::from(cells) > SUB_CELLS || blocked > 7) {
-        return Err(AccumulatorError::Field { what: "list of vertices" });
+/// Bits of a vertex' neighbours that it sees; above them two a coordinate of where it looks from.
+const NEIGHBOUR_BITS: u32 = 26;
+
+impl Vertex {
+    fn to_bytes(&self) -> [u8; VERTEX_BYTES as usize] {
+        let Self { place: Place { cells, moments, aside, open }, validity, blocked_edges } = *self;
+        let aside = (0..3).fold(0, |bits, a| bits | ((aside[a] + 1) as u32) << (2 * a));
+        let mut out = [0; VERTEX_BYTES as usize];
+        out[..2].copy_from_slice(&cells.to_le_bytes());
+        (out[2], out[3]) = (validity, blocked_edges);
+        for (place, moment) in out[4..10].as_chunks_mut::<2>().0.iter_mut().zip(moments) {
+            *place = moment.to_le_bytes();
+        }
+        out[10..].copy_from_slice(&(open | aside << NEIGHBOUR_BITS).to_le_bytes());
+        out
     }
-    Ok(vertices)
+
+    /// `None` for numbers that none has.
+    fn read(bytes: &[u8; VERTEX_BYTES as usize]) -> Option<Self> {
+        let &[c0, c1, validity, blocked_edges, x0, x1, y0, y1, z0, z1, o0, o1, o2, o3] = bytes;
+        let cells = u16::from_le_bytes([c0, c1]);
+        let moments = [[x0, x1], [y0, y1], [z0, z1]].map(i16::from_le_bytes);
+        let bits = u32::from_le_bytes([o0, o1, o2, o3]);
+        let sides: [u32; 3] = core::array::from_fn(|a| bits >> (NEIGHBOUR_BITS as usize + 2 * a) & 3);
+        // The middle of a sub-cell is at most seven half sub-cells from that of the cell.
+        let most = 7 * i32::from(cells);
+        let good = u32::from(cells) <= SUB_CELLS
+            && blocked_edges <= 7
+            && moments.iter().all(|&moment| i32::from(moment).abs() <= most)
+            && sides.iter().all(|&side| side <= 2);
+        let place = Place {
+            cells,
+            moments,
+            aside: sides.map(|side| side as i8 - 1),
+            open: bits & ((1 << NEIGHBOUR_BITS) - 1),
+        };
+        good.then_some(Self { place, validity, blocked_edges })
+    }
+}
+
+fn read_vertices(bytes: &[u8]) -> Result<Vec<Vertex>, AccumulatorError> {
+    let vertices = bytes.as_chunks::<{ VERTEX_BYTES as usize }>().0.iter().map(Vertex::read);
+    vertices.collect::<Option<_>>().ok_or(AccumulatorError::Field { what: "list of vertices" })
 }
 
 /// For fuzzing: bytes that are read are written as they were, and merging and finishing what they say ends in a grid or an error.

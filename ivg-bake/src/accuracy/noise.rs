@@ -8,9 +8,7 @@
 
 use super::student;
 use crate::BakeError;
-use crate::accumulate::Total;
-use crate::estimate::Estimate;
-use crate::estimate::held::{AXES, Axes, Held};
+use crate::estimate::held::{AXES, Axes};
 use crate::workers::{Workers, map_chunks};
 
 /// Noise of the sums of photons, in units of what the grid would hold if each photon carried unit power and their number
@@ -40,33 +38,24 @@ impl Noise {
         Self { vertices: vec![vertex; vertices], samples: Vec::new() }
     }
 
-    /// Notes the sums after the first batch of a pair.
-    pub(crate) fn note_first<E: Estimate<Value: Held>>(
-        &mut self,
-        estimate: &E,
-        total: &Total<'_>,
-        workers: &Workers<'_>,
-    ) -> Result<(), BakeError> {
+    /// Notes what vertices hold after the first batch of a pair.
+    pub(crate) fn note_first(&mut self, axes: &[Axes], workers: &Workers<'_>) -> Result<(), BakeError> {
         map_chunks(workers, &mut self.vertices, |first, chunk| {
-            for (offset, vertex) in chunk.iter_mut().enumerate() {
-                vertex.between = estimate.value(total, first + offset, 1.0).axes();
-            }
+            chunk.iter_mut().zip(&axes[first..]).for_each(|(vertex, axes)| vertex.between = *axes);
         })?;
         Ok(())
     }
 
-    /// Notes the sums after the second batch of a pair, of `batch` photons each.
-    pub(crate) fn note_second<E: Estimate<Value: Held>>(
+    /// Notes what they hold after the second batch of a pair, of `batch` photons each.
+    pub(crate) fn note_second(
         &mut self,
-        estimate: &E,
-        total: &Total<'_>,
+        axes: &[Axes],
         batch: u64,
         workers: &Workers<'_>,
     ) -> Result<(), BakeError> {
         let sums = map_chunks(workers, &mut self.vertices, |first, chunk| {
             let mut sum = 0.0;
-            for (offset, vertex) in chunk.iter_mut().enumerate() {
-                let after = estimate.value(total, first + offset, 1.0).axes();
+            for (vertex, &after) in chunk.iter_mut().zip(&axes[first..]) {
                 let mut squares = 0.0;
                 for n in 0..AXES {
                     let [before, between, after] =

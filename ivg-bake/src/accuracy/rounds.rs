@@ -17,7 +17,7 @@ use super::probes::{Bias, Probes, change};
 use super::{AccuracyReport, EndedBy, Simulated, beyond};
 use crate::bake::Job;
 use crate::estimate::Estimate;
-use crate::estimate::held::{Held, energy};
+use crate::estimate::held::{Axes, Held, Linear, energy};
 use crate::estimate::vertex_gather::{Enough, VertexGather};
 use crate::tally::{PHOTONS_A_PIECE, Photons, Tally};
 use crate::workers::{Workers, map};
@@ -72,6 +72,7 @@ where
         tally: Tally::new(&job.tracer, estimate, job.workers.threads),
         noise: Noise::new(vertices),
         probes: None,
+        axes: Vec::new(),
         gathered: BTreeMap::new(),
         biased: 0,
         looks: 0,
@@ -86,6 +87,8 @@ struct Rounds<'a, E> {
     tally: Tally<'a, E>,
     noise: Noise,
     probes: Option<Probes>,
+    /// What vertices hold along the axes, for photons of unit power each.
+    axes: Vec<Axes>,
     /// Vertices that are to hold gathered light.
     gathered: BTreeMap<usize, VertexGather>,
     /// How many of them would be too biased otherwise.
@@ -188,12 +191,11 @@ where
             for half in 0..2 {
                 let from = first + (2 * pair + half) * batch;
                 self.tally.trace(Photons::all(from, from + batch), &workers)?;
-                let estimate = self.tally.estimate;
-                let total = self.tally.total();
+                self.read()?;
                 if half == 0 {
-                    self.noise.note_first(estimate, &total, &workers)?;
+                    self.noise.note_first(&self.axes, &workers)?;
                 } else {
-                    self.noise.note_second(estimate, &total, batch, &workers)?;
+                    self.noise.note_second(&self.axes, batch, &workers)?;
                 }
             }
             // Noise can be told from two samples.
@@ -202,6 +204,21 @@ where
             }
         }
         Ok(false)
+    }
+
+    /// Reads what vertices hold of the photons traced so far.
+    fn read(&mut self) -> Result<(), BakeError> {
+        let estimate = self.tally.estimate;
+        let total = self.tally.total();
+        let vertices = self.job.ready.cells.len();
+        self.axes = map(&self.job.workers, vertices, |vertex| estimate.value(&total, vertex, 1.0).axes())?;
+        self.job.carry(&mut self.axes)
+    }
+
+    /// Light along the axes of a vertex \[W/m²\].
+    fn axes_of(&self) -> impl Fn(usize) -> Axes {
+        let power = (self.job.power() / self.tally.photons() as f64) as f32;
+        move |vertex| self.axes[vertex].map(|x| x * power)
     }
 
     /// A new look at noise and bias.
@@ -219,21 +236,17 @@ where
     fn look_again(&mut self) -> Result<Look, BakeError> {
         let photons = self.tally.photons() as f64;
         let unit = self.unit();
-        let estimate = self.tally.estimate;
-        let total = self.tally.total();
         let power = self.job.power() / photons;
-        let energies = map(&self.job.workers, self.job.ready.cells.len(), |vertex| {
-            energy(&estimate.value(&total, vertex, power).axes())
-        })?;
+        let energies = self.axes.iter().map(|axes| power * power * energy(axes));
         // Vertices that hold gathered light have its noise instead of that of photons.
-        let all: f64 = (0..energies.len()).map(|vertex| self.noise.of_vertex(vertex)).sum();
+        let all: f64 = (0..self.axes.len()).map(|vertex| self.noise.of_vertex(vertex)).sum();
         let replaced: f64 = self.gathered.keys().map(|&vertex| self.noise.of_vertex(vertex)).sum();
         let kept = if all > 0.0 { 1.0 - replaced / all } else { 1.0 };
         let of_gathered: f64 = self.gathered.values().map(|gather| gather.variance).sum();
         let factor = unit * photons * kept;
         let noise = self.noise.variance() * factor + of_gathered;
         let noise_bound = self.noise.bound(0.5 * beyond(self.looks)) * factor + of_gathered;
-        let signal = (energies.iter().sum::<f64>() - self.noise.variance() * unit * photons).max(0.0);
+        let signal = (energies.sum::<f64>() - self.noise.variance() * unit * photons).max(0.0);
         let bias = self.bias();
         Ok(Look {
             signal,
@@ -268,12 +281,10 @@ where
     fn strata(&mut self) -> Result<Probes, BakeError> {
         let job = self.job;
         let (cells, surroundings) = (&job.ready.cells, job.surroundings);
-        let estimate = self.tally.estimate;
-        let total = self.tally.total();
-        let axes = |vertex: usize| estimate.value(&total, vertex, 1.0).axes();
+        let axes = self.axes_of();
         let changes = map(&job.workers, cells.len(), |vertex| {
             let neighbours = surroundings.open_neighbours(cells, vertex);
-            change(&axes(vertex), neighbours.map(axes))
+            change(&axes(vertex), neighbours.map(&axes))
         })?;
         let touched = |vertex| surroundings.is_touched(vertex);
         Ok(Probes::new(job.counted(), job.seed(), touched, |vertex| changes[vertex]))
@@ -282,16 +293,12 @@ where
     /// Gathers at the vertices where averaging over cells is most biased; says whether there were any.
     fn gather_worst(&mut self, look: &Look) -> Result<bool, BakeError> {
         let photons = self.tally.photons() as f64;
-        let (unit, power) = (self.unit(), self.job.power() / photons);
-        let estimate = self.tally.estimate;
-        let total = self.tally.total();
-        let noise = &self.noise;
-        let worst = self.probes.as_mut().and_then(|probes| {
-            probes.take_worst(
-                |vertex| estimate.value(&total, vertex, power).axes(),
-                |vertex| noise.of_vertex(vertex) * unit * photons,
-            )
+        let unit = self.unit();
+        let mut probes = self.probes.take();
+        let worst = probes.as_mut().and_then(|probes| {
+            probes.take_worst(self.axes_of(), |vertex| self.noise.of_vertex(vertex) * unit * photons)
         });
+        self.probes = probes;
         let Some(vertices) = worst else { return Ok(false) };
         let variance = GATHERED_NOISE * self.asked.powi(2) * look.signal / vertices.len().max(1) as f64;
         let enough = Enough::Variance { variance, most: MOST_PATHS };
@@ -323,16 +330,14 @@ where
     /// Vertices too noisy for their own brightness, and how well they are to be gathered.
     fn noisy(&mut self, look: &Look) -> Result<Vec<(usize, Enough)>, BakeError> {
         let photons = self.tally.photons() as f64;
-        let (unit, power) = (self.unit(), self.job.power() / photons);
+        let (unit, axes) = (self.unit(), self.axes_of());
         let dimmest = DIMMEST.powi(2) * look.signal / self.job.counted().count().max(1) as f64;
         let most = (VERTEX_NOISE * self.asked).powi(2);
-        let estimate = self.tally.estimate;
-        let total = self.tally.total();
         let (noise, gathered) = (&self.noise, &self.gathered);
         let vertices: Vec<usize> = self.job.counted().filter(|v| !gathered.contains_key(v)).collect();
         let found = map(&self.job.workers, vertices.len(), |n| {
             let vertex = vertices[n];
-            let square = energy(&estimate.value(&total, vertex, power).axes());
+            let square = energy(&axes(vertex));
             let variance = noise.of_vertex(vertex) * unit * photons;
             let allowed = most * (square - variance).max(dimmest);
             // No photon at all says nothing about how dark it is.
@@ -365,11 +370,12 @@ where
             noisy: noisy.len() - gathered_noisy,
             paths: into_grid + probes.map_or(0, Probes::paths),
         };
-        drop(self.noise);
+        drop((self.noise, self.axes));
         let estimate = self.tally.estimate;
         let traced = self.tally.finish();
         let power = self.job.power() / traced.photons as f64;
         let mut values = estimate.values(traced.sums, self.job.ready.cells.len(), power);
+        self.job.carry(&mut values)?;
         for (vertex, gather) in &self.gathered {
             values[*vertex] = E::Value::gathered(&gather.numbers);
         }
@@ -385,12 +391,7 @@ where
     fn bias(&mut self) -> Option<Bias> {
         let probes = self.probes.as_ref()?;
         let photons = self.tally.photons() as f64;
-        let (unit, power) = ((self.job.power() / photons).powi(2), self.job.power() / photons);
-        let estimate = self.tally.estimate;
-        let total = self.tally.total();
-        Some(probes.bias(
-            |vertex| estimate.value(&total, vertex, power).axes(),
-            |vertex| self.noise.of_vertex(vertex) * unit * photons,
-        ))
+        let unit = self.unit();
+        Some(probes.bias(self.axes_of(), |vertex| self.noise.of_vertex(vertex) * unit * photons))
     }
 }

@@ -7,7 +7,7 @@ use ivg_scene::{FlatScene, LightKind, Scene};
 
 use super::beyond;
 use crate::cases::{SceneBuilder, plan};
-use crate::estimate::held::{AXES, Held};
+use crate::estimate::held::{AXES, Linear};
 use crate::{BakeError, BakeOptions, BakeResult, CONFIDENCE, EndedBy, Estimator, Monitor, Silent, bake};
 
 /// A white block under an even sky: the irradiance of everything is π.

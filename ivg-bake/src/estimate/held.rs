@@ -12,16 +12,22 @@ pub(crate) const AXES: usize = 18;
 /// The irradiance of surfaces that face along the axes, `[rgb][+x −x +y −y +z −z]` flattened.
 pub(crate) type Axes = [f32; AXES];
 
-/// What a vertex holds.
-pub(crate) trait Held: Copy + Send + Sync {
+/// Light that can be added up, channel by channel.
+pub(crate) trait Linear: Copy + Default + Send + Sync {
     /// The irradiance of surfaces that face along the axes: I_d·d of the vectors, or what the harmonics make of it.
     fn axes(&self) -> Axes;
 
+    /// Adds `other`, of each channel a multiple.
+    fn add(&mut self, other: &Self, factors: [f32; 3]);
+}
+
+/// What a vertex holds.
+pub(crate) trait Held: Linear {
     /// From what was gathered.
     fn gathered(numbers: &[f64; NUMBERS]) -> Self;
 }
 
-impl Held for HemisphereVectors {
+impl Linear for HemisphereVectors {
     fn axes(&self) -> Axes {
         core::array::from_fn(|n| {
             let (channel, hemisphere) = (n / 6, n % 6);
@@ -30,6 +36,16 @@ impl Held for HemisphereVectors {
         })
     }
 
+    fn add(&mut self, other: &Self, factors: [f32; 3]) {
+        for (own, other) in self.iter_mut().zip(other) {
+            for c in 0..3 {
+                own[c].iter_mut().zip(other[c]).for_each(|(x, y)| *x += factors[c] * y);
+            }
+        }
+    }
+}
+
+impl Held for HemisphereVectors {
     fn gathered(numbers: &[f64; NUMBERS]) -> Self {
         core::array::from_fn(|h| {
             core::array::from_fn(|c| core::array::from_fn(|k| numbers[9 * h + 3 * c + k] as f32))
@@ -37,7 +53,7 @@ impl Held for HemisphereVectors {
     }
 }
 
-impl Held for RadianceHarmonics {
+impl Linear for RadianceHarmonics {
     fn axes(&self) -> Axes {
         let towards: [Vec3; 6] = core::array::from_fn(|hemisphere| {
             let axis = Vec3::AXES[hemisphere / 2];
@@ -46,10 +62,30 @@ impl Held for RadianceHarmonics {
         core::array::from_fn(|n| towards[n % 6][n / 6])
     }
 
+    fn add(&mut self, other: &Self, factors: [f32; 3]) {
+        for c in 0..3 {
+            self[c].iter_mut().zip(other[c]).for_each(|(x, y)| *x += factors[c] * y);
+        }
+    }
+}
+
+impl Held for RadianceHarmonics {
     fn gathered(numbers: &[f64; NUMBERS]) -> Self {
         core::array::from_fn(|c| {
             core::array::from_fn(|n| numbers[VECTOR_NUMBERS + COEFFICIENTS * c + n] as f32)
         })
+    }
+}
+
+impl Linear for Axes {
+    fn axes(&self) -> Axes {
+        *self
+    }
+
+    fn add(&mut self, other: &Self, factors: [f32; 3]) {
+        for (n, (x, y)) in self.iter_mut().zip(other).enumerate() {
+            *x += factors[n / (AXES / 3)] * y;
+        }
     }
 }
 
