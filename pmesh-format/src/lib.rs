@@ -62,6 +62,7 @@ mod header;
 mod lattice;
 mod limits;
 mod lists;
+mod machine;
 mod material;
 mod mesh;
 mod packet;

@@ -6,6 +6,7 @@
 
 use alloc::vec::Vec;
 
+use crate::machine::fetch;
 use crate::room::{reserve, resize};
 
 /// Slots of a vertex that need no list in the pool.
@@ -34,6 +35,14 @@ impl Slots {
     pub(crate) fn resize(&mut self, vertices: usize, total: usize) {
         resize(&mut self.lens, vertices, total, 0);
         resize(&mut self.blocks, vertices, total, [0; BLOCK]);
+    }
+
+    /// Has the list of `vertex` brought near, if it is short.
+    #[inline(always)]
+    pub(crate) fn fetch(&self, vertex: u32) {
+        if let Some(block) = self.blocks.get(vertex as usize) {
+            fetch(block);
+        }
     }
 
     /// How many slots `vertex` has.

@@ -1,6 +1,8 @@
 //! Adaptive models: how probable each value is, learnt from those before (PMESH-COD-04).
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::arithmetic_side_effects))]
 
+use crate::machine::{Lanes, approach, not_above};
+
 /// Bits of a probability.
 pub(super) const PROBABILITY_BITS: u32 = 15;
 
@@ -73,18 +75,30 @@ impl Binary {
     }
 }
 
+/// By how many bits the step of a model of 16 symbols is shortened that has seen so many values.
+#[expect(clippy::indexing_slicing, reason = "a constant")]
+const SHIFTS: [u8; 128] = {
+    let mut shifts = [FIRST_SHIFT as u8; 128];
+    let mut seen = 0;
+    while seen < shifts.len() {
+        shifts[seen] += (seen >= SLOWER[0] as usize) as u8 + (seen >= SLOWER[1] as usize) as u8;
+        seen += 1;
+    }
+    shifts
+};
+
 /// One of 16.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(super) struct Symbols {
     /// Where the range of each symbol begins; strictly increasing, the first 0.
-    starts: [i16; 16],
+    starts: Lanes,
     seen: u16,
 }
 
 /// What the starts tend to when a symbol comes again and again.
 #[expect(clippy::indexing_slicing, reason = "a constant")]
-const TARGETS: [[i16; 16]; 16] = {
+const TARGETS: [Lanes; 16] = {
     let mut targets = [[0; 16]; 16];
     let mut symbol = 0;
     while symbol < 16 {
@@ -110,29 +124,26 @@ impl Symbols {
     /// Start and width of the range of a symbol.
     #[inline(always)]
     pub(super) fn range(&self, symbol: usize) -> (u32, u32) {
-        let start = self.starts.get(symbol & 15).copied().unwrap_or(0) as u32;
-        let end = self.starts.get(symbol.wrapping_add(1)).map_or(ONE, |&end| end as u32);
-        (start, end.wrapping_sub(start))
+        let [start, end] = [symbol & 15, symbol.wrapping_add(1) & 15]
+            .map(|k| self.starts.get(k).copied().unwrap_or(0) as u32);
+        // Behind the last one 0 begins again.
+        (start, end.wrapping_sub(start) & (ONE - 1))
     }
 
     /// The symbol in whose range a number lies.
     #[inline(always)]
     pub(super) fn find(&self, at: u32) -> usize {
-        let at = at as i16;
-        let below = self.starts.iter().map(|&start| u16::from(start <= at)).sum::<u16>();
-        usize::from(below).wrapping_sub(1)
+        not_above(&self.starts, at as i16).wrapping_sub(1)
     }
 
     #[inline(always)]
     pub(super) fn update(&mut self, symbol: usize) {
-        let [soon, late] = SLOWER;
-        let shift =
-            FIRST_SHIFT.wrapping_add(u32::from(self.seen >= soon)).wrapping_add(u32::from(self.seen >= late));
-        if let Some(targets) = TARGETS.get(symbol) {
-            for (start, target) in self.starts.iter_mut().zip(targets) {
-                *start = start.wrapping_add(target.wrapping_sub(*start) >> shift);
-            }
+        let seen = usize::from(self.seen) & (SHIFTS.len().wrapping_sub(1));
+        let shift = SHIFTS.get(seen).copied().unwrap_or(0);
+        if let Some(targets) = TARGETS.get(symbol & 15) {
+            approach(&mut self.starts, targets, shift.into());
         }
-        self.seen = self.seen.saturating_add(1).min(late);
+        let [_, late] = SLOWER;
+        self.seen = self.seen.wrapping_add(u16::from(self.seen < late));
     }
 }

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use super::Shape;
 use super::geometry::Cell;
+use crate::machine::fetch;
 use crate::room::reserve;
 
 /// A vertex as its neighbours see it (PMESH-COD-05): the cell, then its class of height × 2¹⁶ + its scale. All four numbers of
@@ -46,10 +47,12 @@ impl Points {
         if self.is_wide { self.with_highs(point, vertex) } else { point }
     }
 
-    /// Anything that stands where a point does.
+    /// Has a point brought near.
     #[inline(always)]
-    pub(super) fn touch(&self, vertex: u32) -> u32 {
-        self.lows.get(vertex as usize).map_or(0, |point| point[0].into())
+    pub(super) fn fetch(&self, vertex: u32) {
+        if let Some(point) = self.lows.get(vertex as usize) {
+            fetch(point);
+        }
     }
 
     #[inline]

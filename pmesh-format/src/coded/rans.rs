@@ -117,7 +117,7 @@ impl Coder for Writer {
 
 #[inline(always)]
 fn low_bits(bits: u32) -> u64 {
-    (1u64.unbounded_shl(bits)).wrapping_sub(1)
+    1u64.wrapping_shl(bits).wrapping_sub(1)
 }
 
 /// Bytes of the two states.
@@ -224,8 +224,8 @@ impl Coder for Reader<'_> {
     #[inline(always)]
     fn raw_long(&mut self, bits: u32, _: u64) -> u64 {
         let from = self.bits / 8;
-        let end = self.payload.len().wrapping_sub(from);
-        let eight = self.payload.get(..end).and_then(|before| before.last_chunk());
+        let start = self.payload.len().wrapping_sub(from).wrapping_sub(8);
+        let eight = self.payload.get(start..).and_then(|rest| rest.first_chunk());
         let eight = eight.map_or_else(|| self.few(from), |eight| u64::from_be_bytes(*eight));
         let value = eight >> (self.bits % 8) & low_bits(bits);
         self.bits = self.bits.wrapping_add(bits as usize);

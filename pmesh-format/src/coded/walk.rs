@@ -10,13 +10,14 @@ use super::{Changes, Fault, LENGTH, Shape, State};
 use crate::code::codes;
 use crate::header::PacketEntry;
 use crate::lattice::Lattice;
+use crate::machine::fetch;
 use crate::storage::Positions;
 
 /// Vertices whose parents are found at a time (PMESH-COD-07): a power of two.
 const BATCH: usize = 64;
 
-/// How many splits ahead what they need is fetched.
-const AHEAD: usize = 2;
+/// How many splits ahead what they need of vertices is fetched; of faces twice as many.
+const AHEAD: usize = 6;
 
 /// What a writer knows; the reader's knows nothing, and nobody looks at what it says.
 pub(super) trait Source: Copy {
@@ -135,9 +136,14 @@ impl State {
             if found == 0 {
                 return Err((codes::PARENT, 0));
             }
+            parents[..found].iter().take(2 * AHEAD).for_each(|&parent| self.fetch_faces(parent));
+            parents[..found].iter().take(AHEAD).for_each(|&parent| self.fetch_neighbours(parent));
             for (k, &parent) in parents[..found].iter().enumerate() {
+                if let Some(&later) = parents[..found].get(k + 2 * AHEAD) {
+                    self.fetch_faces(later);
+                }
                 if let Some(&later) = parents[..found].get(k + AHEAD) {
-                    self.touch(later);
+                    self.fetch_neighbours(later);
                 }
                 let step = Step { source, extent, bounds: &bounds, vertex, parent };
                 self.code_split(coder, step, changes)?;
@@ -154,15 +160,26 @@ impl State {
         Ok(())
     }
 
-    /// Looks at what a split of that vertex will look at, so that it is near by then.
+    /// Has the corners of the faces at a vertex brought near, where these are few.
     #[inline(always)]
-    fn touch(&self, parent: u32) {
-        let mut all = 0;
-        for &slot in self.slots.few(parent) {
-            let [a, b, c] = self.corners.get(slot as usize / 3).copied().unwrap_or_default();
-            all |= self.points.touch(a) ^ self.points.touch(b) ^ self.points.touch(c);
+    fn fetch_faces(&self, vertex: u32) {
+        for &slot in self.slots.few(vertex) {
+            if let Some(corner) = self.corners.as_flattened().get(slot as usize) {
+                fetch(corner);
+            }
         }
-        core::hint::black_box(all);
+    }
+
+    /// Has what a split of that vertex needs of its neighbours brought near, where these are few.
+    #[inline(always)]
+    fn fetch_neighbours(&self, vertex: u32) {
+        for &slot in self.slots.few(vertex) {
+            let next = if slot % 3 == 2 { slot.wrapping_sub(2) } else { slot.wrapping_add(1) };
+            if let Some(&neighbour) = self.corners.as_flattened().get(next as usize) {
+                self.points.fetch(neighbour);
+                self.slots.fetch(neighbour);
+            }
+        }
     }
 
     /// Which model tells whether a vertex is split (once more).
