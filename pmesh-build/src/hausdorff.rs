@@ -13,6 +13,9 @@ pub(crate) struct Hausdorff {
     original: Bvh,
     /// The vertices that have come to each vertex that is left, and itself, as a ring: each names the next.
     next: Vec<u32>,
+    /// Which of the vertices that have come to each vertex was found to be the farthest, or went beyond what was asked for. It
+    /// is seldom another one the next time, and if it is too far off the others are not looked at.
+    farthest: Vec<u32>,
     /// Scratch space: the faces that move, and those around the vertex that they move onto, as they will be.
     after: Vec<[DVec3; 3]>,
 }
@@ -23,6 +26,7 @@ impl Hausdorff {
         Self {
             original: Bvh::new(surface),
             next: (0..index(surface.positions.len())).collect(),
+            farthest: (0..index(surface.positions.len())).collect(),
             after: Vec::new(),
         }
     }
@@ -51,14 +55,19 @@ impl Hausdorff {
         for face in around(v).filter(|face| !face.contains(&u)) {
             self.after.push(face.map(|x| positions[x as usize]));
         }
-        let mut x = u;
+        let first = self.farthest[u as usize];
+        let mut x = first;
         loop {
-            greatest = greatest.max(nearest(positions[x as usize], &mut self.after, greatest));
-            x = self.next[x as usize];
+            let squared = nearest(positions[x as usize], &mut self.after, greatest);
+            if squared > greatest {
+                greatest = squared;
+                self.farthest[u as usize] = x;
+            }
             if greatest > limit {
                 return greatest;
             }
-            if x == u {
+            x = self.next[x as usize];
+            if x == first {
                 break;
             }
         }

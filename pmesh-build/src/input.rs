@@ -1,9 +1,10 @@
 //! Checks an input mesh and brings it into the state that ordering expects: welded, nothing degenerate, nothing
-//! duplicate, nothing unreferenced, wedges sorted by vertex.
+//! duplicate, nothing unreferenced, vertices near their neighbours, wedges sorted by vertex.
 
 use pmesh_format::{IndexedMesh, MAX_COUNT, Wedges};
 
 use crate::error::BuildError;
+use crate::locality::along_curve;
 use crate::options::{BuildOptions, BuildReport};
 
 /// A cleaned copy of `mesh`; what was changed is counted in `report`.
@@ -41,15 +42,24 @@ pub(crate) fn clean(
     drop_duplicates(&mut kept, |i| (turned(vertices_of(&mesh.triangles[i])), mesh.material(i)));
     report.dropped_duplicate = before - kept.len();
 
-    // Renumber what is left: vertices in the order of the input, wedges by vertex, then in the order of the input.
+    // Renumber what is left: vertices along a curve, wedges by vertex, then in the order of the input.
     let mut used = vec![false; mesh.wedges.len()];
     for &i in &kept {
         for w in mesh.triangles[i] {
             used[same_wedge[w as usize] as usize] = true;
         }
     }
-    let mut wedges: Vec<u32> = (0u32..).zip(&used).filter_map(|(w, &used)| used.then_some(w)).collect();
-    wedges.sort_by_key(|&w| (wedge_vertices[w as usize], w));
+    let places = along_curve(&mesh.positions);
+    let mut wedges: Vec<(u64, u32, u32)> = (0u32..)
+        .zip(&used)
+        .filter(|&(_, &used)| used)
+        .map(|(w, _)| {
+            let v = wedge_vertices[w as usize];
+            (places[v as usize], v, w)
+        })
+        .collect();
+    wedges.sort_unstable();
+    let wedges: Vec<u32> = wedges.into_iter().map(|(.., w)| w).collect();
     let mut new_vertex = vec![u32::MAX; mesh.positions.len()];
     let mut new_wedge = vec![u32::MAX; mesh.wedges.len()];
     let mut positions = Vec::new();

@@ -22,7 +22,7 @@
 //! ```
 //!
 //! The result is the same, bit for bit, on every run and every machine: only additions, multiplications, divisions and
-//! square roots of f64 are used, and ties go to the lowest index.
+//! square roots of f64 are used, and ties go to the vertex that comes first along a curve through the box of the mesh.
 //!
 //! # Features
 //! `fuzz`: the body of a fuzz target as a plain function.
@@ -37,6 +37,7 @@ mod error;
 mod fuzz;
 mod hausdorff;
 mod input;
+mod locality;
 mod options;
 mod order;
 mod output;

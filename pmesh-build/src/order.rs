@@ -65,7 +65,6 @@ pub(crate) fn find(
     let costs = Costs::new(options.cost, &surface, deviations, &mut ring);
     let mut run = Run {
         costs,
-        other: Ring::new(vertices),
         ring,
         queue: Queue::new(vertices),
         stale: vec![false; vertices],
@@ -96,7 +95,6 @@ struct Run<'a> {
     wedges: &'a Wedges,
     costs: Costs<'a>,
     ring: Ring,
-    other: Ring,
     queue: Queue,
     /// Whether something beside a vertex has collapsed since its candidate was queued. What it costs has hardly ever
     /// fallen since then, so it is looked at again only when it comes up.
@@ -189,7 +187,7 @@ impl Run<'_> {
     /// Whether `u`, whose edges are in `ring`, may move onto `v`.
     fn allowed(&mut self, u: u32, v: u32) -> bool {
         let coincident = self.coincident();
-        allowed(&self.surface, u, v, self.rules, coincident, &self.ring, &mut self.other)
+        allowed(&self.surface, u, v, self.rules, coincident, &self.ring)
     }
 
     /// Queues the cheapest collapse of `u`, allowed or not: most never come up, so that is found out later. Leaves the
@@ -201,7 +199,7 @@ impl Run<'_> {
         let mut best: Option<Candidate> = None;
         for &v in &self.neighbours {
             let cost = self.costs.of(&self.surface, u, v);
-            if best.is_none_or(|b| cost.total_cmp(&b.cost).is_lt()) {
+            if best.is_none_or(|b| cost.total_cmp(&b.cost).then(v.cmp(&b.v)).is_lt()) {
                 best = Some(Candidate { cost, u, v });
             }
         }

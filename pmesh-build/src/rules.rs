@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::surface::{Ring, Surface};
+use crate::surface::{FEW_FACES, Ring, Surface};
 
 /// How strict the rules are. Each level allows what the ones before it allow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,8 +26,8 @@ const SLIVER: f64 = 0.005;
 /// no distances to all of them are looked at.
 pub(crate) const HUB_FACES: usize = 64;
 
-/// Whether moving `u` onto its neighbour `v` is allowed. `ring` holds the edges of `u`, `other` is scratch space.
-/// `coincident`: whether faces on the same three vertices may arise.
+/// Whether moving `u` onto its neighbour `v` is allowed. `ring` holds the edges of `u`. `coincident`: whether faces on the
+/// same three vertices may arise.
 pub(crate) fn allowed(
     surface: &Surface,
     u: u32,
@@ -35,7 +35,6 @@ pub(crate) fn allowed(
     rules: Rules,
     coincident: bool,
     ring: &Ring,
-    other: &mut Ring,
 ) -> bool {
     let Some(edge) = ring.edge(v) else { return false };
     if surface.face_count <= edge.faces as usize {
@@ -52,7 +51,7 @@ pub(crate) fn allowed(
     }
     // A component that is as small as it can be may become two opposite triangles, which then vanish at once.
     let coincident = coincident || (surface.face_count > 4 && surface.is_tetrahedron(u));
-    rules == Rules::Any || topology_allowed(surface, u, v, rules, coincident, ring, other)
+    rules == Rules::Any || topology_allowed(surface, u, v, rules, coincident, ring)
 }
 
 /// Whether every face that moves with `u` keeps its side, and the worst of them is no sliver, or no worse than the worst was.
@@ -81,27 +80,14 @@ fn shapes_allowed(surface: &Surface, u: u32, v: u32, rules: Rules) -> bool {
 }
 /// The link condition, generalised to edges with any number of faces: after the collapse no edge has more faces than
 /// two or than one of the edges that it was made of, and, unless `coincident`, no two faces have the same vertices.
-fn topology_allowed(
-    surface: &Surface,
-    u: u32,
-    v: u32,
-    rules: Rules,
-    coincident: bool,
-    ring: &Ring,
-    other: &mut Ring,
-) -> bool {
-    let hub = surface.around(v).len() > HUB_FACES;
-    if !hub {
-        other.collect(surface, v);
-    }
+fn topology_allowed(surface: &Surface, u: u32, v: u32, rules: Rules, coincident: bool, ring: &Ring) -> bool {
+    let around_v = surface.around(v);
     ring.edges.iter().filter(|e| e.to != v).all(|edge| {
         let x = edge.to;
-        let faces_there = if hub {
-            let count = surface.around(x).iter().filter(|&&f| surface.faces[f as usize].contains(&v)).count();
-            u32::try_from(count).unwrap_or(u32::MAX)
-        } else {
-            other.edge(x).map_or(0, |e| e.faces)
-        };
+        // Those around `v` have been fetched already; if they are many, there are fewer around most others.
+        let (faces, end) = if around_v.len() > FEW_FACES { (surface.around(x), v) } else { (around_v, x) };
+        let there = faces.iter().filter(|&&f| surface.faces[f as usize].contains(&end)).count();
+        let faces_there = u32::try_from(there).unwrap_or(u32::MAX);
         if faces_there == 0 {
             return true;
         }

@@ -5,6 +5,9 @@ use pmesh_format::IndexedMesh;
 
 use crate::input::index;
 
+/// Up to this many faces around a vertex are gone through one by one, which costs less than looking elsewhere.
+pub(crate) const FEW_FACES: usize = 16;
+
 /// A triangle mesh that loses vertices one by one.
 #[derive(Debug)]
 pub(crate) struct Surface {
@@ -20,17 +23,30 @@ pub(crate) struct Surface {
     pub(crate) around: Incidence,
     /// Faces that are still there.
     pub(crate) face_count: usize,
+    /// Whether any edge can be a seam: a vertex has two wedges, or two faces differ in material.
+    seams: bool,
 }
 
 impl Surface {
-    /// Takes over a cleaned mesh; `positions` are its positions about its centre.
+    /// Takes over a cleaned mesh; `positions` are its positions about its centre. Faces get an order of their own, by their
+    /// first vertex: those around a vertex then lie together.
     pub(crate) fn new(mesh: &IndexedMesh, positions: Vec<DVec3>) -> Self {
-        let faces: Vec<[u32; 3]> = (0..mesh.triangles.len()).map(|i| mesh.triangle_vertices(i)).collect();
+        let mut order: Vec<(u32, u32)> = (0..index(mesh.triangles.len()))
+            .map(|i| {
+                let [a, b, c] = mesh.triangle_vertices(i as usize);
+                (a.min(b).min(c), i)
+            })
+            .collect();
+        order.sort_unstable();
+        let order = || order.iter().map(|&(_, i)| i as usize);
+        let faces: Vec<[u32; 3]> = order().map(|i| mesh.triangle_vertices(i)).collect();
+        let materials: Vec<u16> = order().map(|i| mesh.material(i)).collect();
         Self {
             around: Incidence::new(positions.len(), &faces),
+            seams: mesh.wedges.len() > positions.len() || materials.iter().any(|&m| m != materials[0]),
             positions,
-            corners: mesh.triangles.clone(),
-            materials: (0..faces.len()).map(|i| mesh.material(i)).collect(),
+            corners: order().map(|i| mesh.triangles[i]).collect(),
+            materials,
             face_count: faces.len(),
             faces,
         }
@@ -41,13 +57,21 @@ impl Surface {
         self.around.of(v)
     }
 
-    /// Fills `neighbours` with the vertices that share an edge with `v`, ascending.
+    /// Fills `neighbours` with the vertices that share an edge with `v`, each once.
     pub(crate) fn neighbours(&self, v: u32, neighbours: &mut Vec<u32>) {
         neighbours.clear();
-        let faces = self.around(v).iter().map(|&f| self.faces[f as usize]);
-        neighbours.extend(faces.flatten().filter(|&x| x != v));
-        neighbours.sort_unstable();
-        neighbours.dedup();
+        let around = self.around(v);
+        for &f in around {
+            for x in self.faces[f as usize] {
+                if x != v && (around.len() > FEW_FACES || !neighbours.contains(&x)) {
+                    neighbours.push(x);
+                }
+            }
+        }
+        if around.len() > FEW_FACES {
+            neighbours.sort_unstable();
+            neighbours.dedup();
+        }
     }
 
     /// Whether `u` is a vertex of a component that is a tetrahedron.
@@ -203,26 +227,36 @@ pub(crate) struct Ring {
     /// For each vertex of the mesh: the pass in which it was last seen, and where in `edges`.
     marks: Vec<(u32, u32)>,
     pass: u32,
+    /// Whether the marks were set in this pass: few edges are gone through without them.
+    marked: bool,
 }
 
 impl Ring {
     /// For a mesh with that many vertices.
     pub(crate) fn new(vertices: usize) -> Self {
-        Self { edges: Vec::new(), marks: vec![(0, 0); vertices], pass: 0 }
+        Self { edges: Vec::new(), marks: vec![(0, 0); vertices], pass: 0, marked: false }
     }
 
     /// Collects the edges of `v`.
     pub(crate) fn collect(&mut self, surface: &Surface, v: u32) {
         self.edges.clear();
-        self.pass = self.pass.wrapping_add(1);
-        if self.pass == 0 {
-            self.marks.fill((0, 0));
-            self.pass = 1;
+        let around = surface.around(v);
+        self.marked = around.len() > FEW_FACES;
+        if self.marked {
+            self.pass = self.pass.wrapping_add(1);
+            if self.pass == 0 {
+                self.marks.fill((0, 0));
+                self.pass = 1;
+            }
         }
-        for &f in surface.around(v) {
+        for &f in around {
             let face = surface.faces[f as usize];
-            let corners = surface.corners[f as usize];
-            let material = surface.materials[f as usize];
+            // Without seams there is no need to fetch what may differ at one.
+            let (corners, material) = if surface.seams {
+                (surface.corners[f as usize], surface.materials[f as usize])
+            } else {
+                (face, 0)
+            };
             let at = if face[0] == v {
                 0
             } else if face[1] == v {
@@ -233,13 +267,14 @@ impl Ring {
             for k in [(at + 1) % 3, (at + 2) % 3] {
                 let to = face[k];
                 let wedges = [corners[at], corners[k]];
-                let mark = &mut self.marks[to as usize];
-                if mark.0 == self.pass {
-                    let edge = &mut self.edges[mark.1 as usize];
+                if let Some(at) = self.place(to) {
+                    let edge = &mut self.edges[at];
                     edge.faces += 1;
                     edge.seam |= edge.wedges != wedges || edge.material != material;
                 } else {
-                    *mark = (self.pass, index(self.edges.len()));
+                    if self.marked {
+                        self.marks[to as usize] = (self.pass, index(self.edges.len()));
+                    }
                     self.edges.push(Edge { to, faces: 1, seam: false, wedges, material });
                 }
             }
@@ -248,7 +283,14 @@ impl Ring {
 
     /// The edge to `to`, if there is one.
     pub(crate) fn edge(&self, to: u32) -> Option<&Edge> {
+        self.place(to).map(|at| &self.edges[at])
+    }
+
+    fn place(&self, to: u32) -> Option<usize> {
+        if !self.marked {
+            return self.edges.iter().position(|edge| edge.to == to);
+        }
         let (pass, at) = self.marks[to as usize];
-        (pass == self.pass && self.pass != 0).then(|| &self.edges[at as usize])
+        (pass == self.pass).then_some(at as usize)
     }
 }

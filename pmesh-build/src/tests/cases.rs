@@ -504,7 +504,8 @@ fn a_scene_at_a_million_metres() {
     check_levels(&there, 20);
 }
 
-/// A plane in a regular grid of exact coordinates: all vertices of a border cost the same. The lowest goes first.
+/// A plane in a regular grid of exact coordinates: all vertices of a border cost the same. The one that comes first
+/// along the curve goes first.
 #[test]
 fn coplanar_ties_go_to_the_lowest_index() {
     let (progressive, _) = built(&grid(9, |_, _| 0.0), &default());
