@@ -14,6 +14,8 @@ mod tests;
 use pmesh_format::{Header, IndexedMesh, Mode, PacketEntry, Wedges};
 use std::collections::BTreeMap;
 
+pub use coded::{Asked, payload_of};
+
 /// A rule that a packet breaks: its code in `spec/tables/errors.toml`, and the byte of the payload at which it is reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fault {
@@ -118,6 +120,19 @@ impl<'a> Reference<'a> {
         self.tables = tables;
         self.coded = coded;
         Ok(())
+    }
+
+    /// What reading `payload`, that of the next packet of a coded file, asks, and the answers; at `Some`, these instead, the greatest
+    /// there is where one is too great, and 0 when they end. And the code of what is wrong with them, as far as symbols go.
+    ///
+    /// # Panics
+    ///
+    /// If there is no further packet, or the payload has less than 8 bytes.
+    #[must_use]
+    pub fn asked(&self, payload: &[u8], answers: Option<Vec<i64>>) -> (Vec<Asked>, Option<u16>) {
+        let entry = &self.header.packets[self.tables.packets];
+        let (asked, fault) = self.coded.clone().asked(self.header, entry, payload, answers);
+        (asked, fault.map(|fault| fault.code))
     }
 
     /// The vertex counts that there are levels of.

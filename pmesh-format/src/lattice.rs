@@ -35,9 +35,15 @@ impl Lattice {
         core::array::from_fn(|k| (self.low[k] + f64::from(point[k]) * self.step) as f32)
     }
 
-    /// The point nearest to a position inside the box.
+    /// The point nearest to a position inside the box, among those whose coordinates are finite: the last one along a short side may
+    /// lie beyond it, and beyond what binary32 has.
     pub(crate) fn nearest(&self, position: [f32; 3]) -> [u32; 3] {
-        core::array::from_fn(|k| nearest((f64::from(position[k]) - self.low[k]) / self.step).min(self.top[k]))
+        let mut point = core::array::from_fn(|k| {
+            nearest((f64::from(position[k]) - self.low[k]) / self.step).min(self.top[k])
+        });
+        let found = self.position(point);
+        point.iter_mut().zip(found).for_each(|(number, x)| *number -= u32::from(!x.is_finite()));
+        point
     }
 }
 

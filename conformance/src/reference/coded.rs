@@ -13,6 +13,7 @@ use super::{Fault, Tables};
 use attributes::Wedged;
 use cells::Cells;
 use cut::{ordered, run};
+pub use symbols::{Asked, payload_of};
 use symbols::{Binary, Sixteen, Symbols, residual};
 
 /// Codes of `spec/tables/errors.toml`; all are reported at byte 0 unless the text says otherwise.
@@ -147,11 +148,53 @@ impl Coded {
     ) -> Result<(), Fault> {
         let Some(mut symbols) = Symbols::new(payload) else { return fault(CODED_LENGTH) };
         let mut brought = Brought::default();
+        let looked_at = self.read(&mut symbols, &mut brought, header, entry)?;
+        if !symbols.at_end() {
+            return fault(CODED_LENGTH);
+        }
+        let (start, faces) = (entry.vertices.start as usize, (entry.faces.end - entry.faces.start) as usize);
+        let wedges = (entry.wedges.end - entry.wedges.start) as usize;
+        let demanded = (8 + (wedges + faces) / 4 + start / 64).max(looked_at.div_ceil(64));
+        let left = symbols.at;
+        let raw_at = symbols.raw_at() as usize;
+        if left < raw_at && payload.len() > demanded {
+            return Err(Fault { code: CODED_LENGTH, at: left });
+        }
+        if payload[left..raw_at].iter().any(|&byte| byte != 0) || symbols.rest() != 0 {
+            return Err(Fault { code: CODED_PADDING, at: left });
+        }
+        self.packets += 1;
+        self.hand_over(tables, header, &brought)
+    }
+
+    /// What reading a packet asks, and the answers: those of its payload, or `answers` and 0 behind them; and what was wrong with
+    /// them, what stands behind the symbols not looked at.
+    pub(super) fn asked(
+        mut self,
+        header: &Header,
+        entry: &PacketEntry,
+        payload: &[u8],
+        answers: Option<Vec<i64>>,
+    ) -> (Vec<Asked>, Option<Fault>) {
+        let mut symbols = Symbols::new(payload).expect("two states");
+        symbols.note(answers);
+        let result = self.read(&mut symbols, &mut Brought::default(), header, entry);
+        (symbols.asked(), result.err())
+    }
+
+    /// All symbols of a packet; how many faces of parents were looked at.
+    fn read(
+        &mut self,
+        symbols: &mut Symbols<'_>,
+        brought: &mut Brought,
+        header: &Header,
+        entry: &PacketEntry,
+    ) -> Result<usize, Fault> {
         let cells = Cells::new(header);
         let (start, end) = (entry.vertices.start as usize, entry.vertices.end as usize);
         let base = header.base_vertices as usize;
         if start < base {
-            self.base(&mut symbols, &mut brought, &cells, base, entry.faces.end as usize)?;
+            self.base(symbols, brought, &cells, base, entry.faces.end as usize)?;
         }
         let (mut parent, mut times, mut looked_at) = (0, 0, 0);
         let mut vertex = start.max(base);
@@ -172,10 +215,10 @@ impl Coded {
             }
             for parent in parents {
                 looked_at += self.spokes(parent).len();
-                if looked_at > 64 * payload.len() {
+                if looked_at > 64 * entry.payload_bytes as usize {
                     return fault(CODED_WORK);
                 }
-                self.split(&mut symbols, &mut brought, &cells, vertex, parent, entry.faces.end as usize)?;
+                self.split(symbols, brought, &cells, vertex, parent, entry.faces.end as usize)?;
                 if symbols.missing() {
                     return fault(CODED_LENGTH);
                 }
@@ -187,24 +230,9 @@ impl Coded {
         }
         if header.attributes != Attributes::default() {
             let cells: Vec<Cell> = self.known.iter().map(|known| known.cell).collect();
-            self.wedged.read(&mut symbols, header, entry, &cells, &brought)?;
+            self.wedged.read(symbols, header, entry, &cells, brought)?;
         }
-        if !symbols.at_end() {
-            return fault(CODED_LENGTH);
-        }
-        let faces = (entry.faces.end - entry.faces.start) as usize;
-        let wedges = (entry.wedges.end - entry.wedges.start) as usize;
-        let demanded = (8 + (wedges + faces) / 4 + start / 64).max(looked_at.div_ceil(64));
-        let left = symbols.at;
-        let raw_at = symbols.raw_at() as usize;
-        if left < raw_at && payload.len() > demanded {
-            return Err(Fault { code: CODED_LENGTH, at: left });
-        }
-        if payload[left..raw_at].iter().any(|&byte| byte != 0) || symbols.rest() != 0 {
-            return Err(Fault { code: CODED_PADDING, at: left });
-        }
-        self.packets += 1;
-        self.hand_over(tables, header, &brought)
+        Ok(looked_at)
     }
 
     /// What there is after the packet, with corners at its end, as raw packets leave it.
@@ -261,7 +289,7 @@ impl Coded {
         most_faces: usize,
     ) -> Result<(), Fault> {
         for _ in 0..base {
-            let cell = cells.most.map(|most| symbols.raw(bits(most)));
+            let cell = cells.most.map(|most| symbols.about("cell of the base").raw(bits(most)));
             if (0..3).any(|k| cell[k] > cells.most[k]) {
                 return fault(POSITION);
             }
@@ -271,7 +299,7 @@ impl Coded {
                 return fault(CODED_LENGTH);
             }
         }
-        let count = symbols.raw(32) as usize;
+        let count = symbols.about("faces of the base").raw(32) as usize;
         if count > most_faces {
             return fault(CODED_FACES);
         }
@@ -402,7 +430,7 @@ impl Coded {
         for (side, expected) in [starts, stops].into_iter().enumerate() {
             loop {
                 let model = 2 * (4 * side + thirds[side].len().min(3)) + usize::from(expected.is_some());
-                if !symbols.bit(&mut self.models.faces[model]) {
+                if !symbols.about("more faces").bit(&mut self.models.faces[model]) {
                     break;
                 }
                 let x = if symbols.bit(&mut self.models.thirds[0]) {

@@ -5,6 +5,7 @@ use super::{Format, Vector};
 use pmesh_format::{EncodeOptions, Header, Limits, ProgressiveMesh, Step, Wedges, encode};
 use std::ops::Range;
 
+mod dictated;
 mod refused;
 mod refused_coded;
 mod refused_frame;

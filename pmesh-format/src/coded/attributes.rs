@@ -83,12 +83,7 @@ impl Plan {
     pub(crate) fn uvs(&self, uvs: &[[f32; 2]]) -> Vec<[i32; 2]> {
         let nearest = |&[u, v]: &[f32; 2]| {
             let [u, v, _] = self.lattice.nearest([u, v, 0.0]);
-            let mut point = [u as i32, v as i32];
-            // The last point of the shorter side may lie beyond it, and beyond what binary32 has.
-            for k in 0..2 {
-                point[k] -= i32::from(!self.uv(point)[k].is_finite());
-            }
-            point
+            [u as i32, v as i32]
         };
         uvs.iter().map(nearest).collect()
     }

@@ -46,3 +46,13 @@ fn the_lattice_is_that_of_the_specification() {
     assert_eq!((point.top(), point.nearest([3.0; 3]), point.position([0; 3])), ([0; 3], [0; 3], [3.0; 3]));
     assert_eq!(Positions::F32.quantised(&[[0.1, -0.0, 3.0]]), vec![[0.1, -0.0, 3.0]]);
 }
+
+/// The last point of the short side would be beyond the greatest number: the one before is taken, so that readers take it too.
+#[test]
+fn positions_up_to_the_greatest_number_stay_finite() {
+    let low = (f64::from(f32::MAX) - 1.6 * 3e38 / 1023.0) as f32;
+    let positions = [[0.0, low, 0.0], [3e38, low, 0.0], [0.0, f32::MAX, 0.0]];
+    let lattice = Lattice::new(bounds(&positions), 10);
+    assert!(lattice.top()[1] == 2 && lattice.position([0, 2, 0])[1].is_infinite());
+    assert_eq!(positions.map(|p| lattice.nearest(p)), [[0, 0, 0], [1023, 0, 0], [0, 1, 0]]);
+}

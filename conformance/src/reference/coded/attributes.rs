@@ -105,7 +105,8 @@ impl Wedged {
                 let mut corners = [0; 3];
                 for (k, v) in face.into_iter().enumerate() {
                     let own = self.of(v);
-                    let place = symbols.raw(bits(own.len() as i64 - 1)) as usize;
+                    let own_bits = bits(own.len() as i64 - 1);
+                    let place = symbols.about("place of a wedge of the base").raw(own_bits) as usize;
                     let Some(&wedge) = own.get(place) else { return fault(CORNER) };
                     corners[k] = wedge;
                 }
@@ -203,7 +204,7 @@ impl Wedged {
             let mut target = parents[0];
             if parents.len() > 1 {
                 target = *t.get(j).or(t.last()).unwrap_or(&parents[0]);
-                if !symbols.bit(&mut self.models.targets[usize::from(j >= t.len())]) {
+                if !symbols.about("target").bit(&mut self.models.targets[usize::from(j >= t.len())]) {
                     let place = symbols.raw(bits(parents.len() as i64 - 1)) as usize;
                     let Some(&other) = parents.get(place) else { return fault(WEDGE_TARGET) };
                     target = other;
@@ -221,7 +222,7 @@ impl Wedged {
             let mut wedge = first;
             if among.len() > 1 {
                 wedge = before.filter(|before| among.contains(before)).unwrap_or(first);
-                if !symbols.bit(&mut self.models.same) {
+                if !symbols.about("wedge of a slot").bit(&mut self.models.same) {
                     let place = symbols.raw(bits(among.len() as i64 - 1)) as usize;
                     let Some(&other) = among.get(place) else { return fault(SWITCH) };
                     wedge = other;
@@ -270,7 +271,7 @@ impl Wedged {
             let guess =
                 from.and_then(|face| self.corners[face].iter().copied().find(|&w| self.owners[w] == vertex));
             wedges[k] = guess.unwrap_or(own[0]);
-            if !symbols.bit(&mut self.models.corners[2 * k + usize::from(from.is_some())]) {
+            if !symbols.about("corner").bit(&mut self.models.corners[2 * k + usize::from(from.is_some())]) {
                 let place = symbols.raw(bits(own.len() as i64 - 1)) as usize;
                 let Some(&wedge) = own.get(place) else { return fault(CORNER) };
                 wedges[k] = wedge;
@@ -354,7 +355,7 @@ impl Wedged {
             let turned = |code| if below { plan.turned(code) } else { code };
             let mut code = turned(expected);
             let alike = all.iter().all(|&other| other == all[0]);
-            if !symbols.bit(&mut self.models.exact[0][model(0, alike)]) {
+            if !symbols.about("normal").bit(&mut self.models.exact[0][model(0, alike)]) {
                 for x in &mut code {
                     let r = residual(symbols, &mut self.models.normals, classes[0]);
                     sums[0] += r.abs();
@@ -368,7 +369,7 @@ impl Wedged {
             let [u, v] = expected(&weights, &all);
             let mut point = [u.clamp(0, plan.lattice.most[0]), v.clamp(0, plan.lattice.most[1])];
             let alike = all.iter().all(|&other| other == all[0]);
-            if !symbols.bit(&mut self.models.exact[1][model(1, alike)]) {
+            if !symbols.about("texture coordinates").bit(&mut self.models.exact[1][model(1, alike)]) {
                 for x in &mut point {
                     let r = residual(symbols, &mut self.models.uvs, classes[1]);
                     sums[1] += r.abs();
@@ -381,7 +382,7 @@ impl Wedged {
             let all: Vec<[i64; 4]> = around.iter().map(|&w| self.colours[w]).collect();
             let mut colour = expected(&weights, &all).map(|x| x.clamp(0, 255));
             let alike = all.iter().all(|&other| other == all[0]);
-            if !symbols.bit(&mut self.models.exact[2][model(2, alike)]) {
+            if !symbols.about("colour").bit(&mut self.models.exact[2][model(2, alike)]) {
                 let g = residual(symbols, &mut self.models.green, classes[2]);
                 let r = residual(symbols, &mut self.models.others, classes[2]);
                 let b = residual(symbols, &mut self.models.others, classes[2]);

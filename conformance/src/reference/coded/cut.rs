@@ -45,7 +45,7 @@ pub(super) fn run(
     let all: i64 = edges.iter().sum();
     let longest = *edges.iter().max().expect("faces that go round");
     let a = [5, 6, 8].iter().filter(|&&t| 4 * m as i64 * longest >= t * all).count();
-    let n = number(symbols, &mut models.counts[4 * (m.min(10) - 2) + a]);
+    let n = number(symbols.about("length of a run"), &mut models.counts[4 * (m.min(10) - 2) + a]);
     if n == 0 {
         return Ok(None);
     }
@@ -58,7 +58,10 @@ pub(super) fn run(
     ranked.sort_by_key(|&k| (-weight(k), k));
     let apart = weight(ranked[0]) - weight(ranked[1]);
     let b = [1, 2, 4].iter().filter(|&&t| 8 * m as i64 * apart >= t * all).count();
-    let rank = number(symbols, &mut models.ranks[4 * (9 * (n.min(4) - 1) + m.min(10) - 2) + b]);
+    let rank = number(
+        symbols.about("rank of a run"),
+        &mut models.ranks[4 * (9 * (n.min(4) - 1) + m.min(10) - 2) + b],
+    );
     match ranked.get(rank) {
         Some(&first) => Ok(Some((first, n))),
         None => fault(CORNER),

@@ -3,6 +3,7 @@
 
 use super::super::Refused;
 use super::super::edit::in_envelope;
+use super::dictated::{MOST, answered, cut_where_refused, overlapping};
 use super::refused::{in_directory, payload, with_payload};
 use super::{RECORD_HEAD, entry, header, packet};
 use ivg_wire::{Code, Part};
@@ -14,8 +15,168 @@ const IRREGULAR: &str = "0043-coded-irregular";
 const TRIANGLE: &str = "0041-coded-triangle";
 const ATTRIBUTES: &str = "0051-coded-attributes";
 const HUB: &str = "0050-coded-hub";
+const NORMALS: &str = "0054-coded-normals";
+const WEDGES: &str = "0057-coded-wedges";
+const NO_FACES: &str = "0058-coded-no-faces";
+const GREATEST: &str = "0059-coded-greatest";
 
 pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
+    let mut list = bytes(&twin);
+    list.extend(answers(&twin));
+    list
+}
+
+/// Packets with other answers to what a reader asks: each breaks one rule, and ends there.
+fn answers<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
+    let other = |name: &'static str, what: &str, answers: &[i64], mistake, code, why| {
+        (name, mistake, code, answered(twin(name), what, answers, false, code), why)
+    };
+    // Not as expected; a residual of the greatest octave that an answer of 20 names.
+    let far = [0, 15, 20, MOST, MOST];
+    let (closed, attributes) = (twin(CLOSED), twin(ATTRIBUTES));
+    let faces = header(closed).packets[1].faces.end;
+    // A packet behind which there is one with a wedge to spare.
+    let spare =
+        header(attributes).packets.windows(2).position(|two| two[1].wedges.len() > two[1].vertices.len());
+    let few = spare.expect("a packet with seams") as u32;
+    let wedges = header(attributes).packets[few as usize].wedges.end;
+    vec![
+        other(
+            CLOSED,
+            "cell of the base",
+            &[MOST],
+            "coded-base-cell",
+            mesh::POSITION,
+            "a vertex of the base outside the lattice",
+        ),
+        (
+            GREATEST,
+            "coded-base-infinite",
+            mesh::POSITION,
+            answered(twin(GREATEST), "cell of the base", &[2], true, mesh::POSITION),
+            "a point of the lattice whose coordinate is too great for binary32",
+        ),
+        other(
+            CLOSED,
+            "faces of the base",
+            &[MOST],
+            "coded-base-faces",
+            mesh::CODED_FACES,
+            "more faces of the base than the directory says",
+        ),
+        other(
+            CLOSED,
+            "length of a run",
+            &[14],
+            "coded-run-length",
+            mesh::CORNER,
+            "as many faces switch as there are, or more",
+        ),
+        other(
+            CLOSED,
+            "rank of a run",
+            &[14],
+            "coded-run-rank",
+            mesh::CORNER,
+            "a rank beyond those of the runs there are",
+        ),
+        other(
+            IRREGULAR,
+            "more faces",
+            &[1, 0, 0, MOST],
+            "coded-third-later",
+            mesh::CORNER,
+            "a new face whose third vertex is not there",
+        ),
+        other(
+            IRREGULAR,
+            "more faces",
+            &[1, 0, 1, MOST],
+            "coded-third-place",
+            mesh::CORNER,
+            "a third vertex in a place that the order of faces does not have",
+        ),
+        other(
+            NO_FACES,
+            "more faces",
+            &[1, 0, 0, 0],
+            "coded-third-parent",
+            mesh::FACE_VERTICES,
+            "a new face whose third vertex is its first",
+        ),
+        other(
+            NO_FACES,
+            "more faces",
+            &[1, 1],
+            "coded-guess-parent",
+            mesh::FACE_VERTICES,
+            "a new face whose third vertex, as guessed, is its first",
+        ),
+        (
+            CLOSED,
+            "coded-faces-early",
+            mesh::CODED_FACES,
+            cut_where_refused(
+                closed,
+                &in_directory(closed, 1, entry::END_FACE, faces - 1),
+                1,
+                mesh::CODED_FACES,
+            ),
+            "a packet that ends with the face that the directory does not give it",
+        ),
+        (
+            ATTRIBUTES,
+            "coded-wedges-few",
+            mesh::WEDGE_COUNT,
+            in_directory(attributes, few, entry::END_WEDGE, wedges + 1),
+            "the directory gives a packet a wedge more than it brings",
+        ),
+        other(
+            WEDGES,
+            "place of a wedge of the base",
+            &[MOST],
+            "coded-base-wedge",
+            mesh::CORNER,
+            "a corner of the base has a fourth wedge of three",
+        ),
+        other(
+            WEDGES,
+            "target",
+            &[0, MOST],
+            "coded-target",
+            mesh::WEDGE_TARGET,
+            "a wedge becomes a fourth wedge of three",
+        ),
+        other(
+            WEDGES,
+            "corner",
+            &[0, MOST],
+            "coded-wedge",
+            mesh::CORNER,
+            "a corner of a new face has a fourth wedge of three",
+        ),
+        other(NORMALS, "normal", &far, "coded-normal", mesh::ATTRIBUTE, "a normal outside its square"),
+        other(
+            ATTRIBUTES,
+            "texture coordinates",
+            &far,
+            "coded-uv",
+            mesh::ATTRIBUTE,
+            "texture coordinates outside their lattice",
+        ),
+        other(ATTRIBUTES, "colour", &far, "coded-colour", mesh::ATTRIBUTE, "a colour outside 0 to 255"),
+        (
+            EXACT,
+            "coded-overlap",
+            mesh::CODED_LENGTH,
+            overlapping(twin(EXACT), mesh::CODED_LENGTH),
+            "the last word of a packet and its raw bits have a byte in common",
+        ),
+    ]
+}
+
+/// Packets of which bytes are changed.
+fn bytes<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
     let closed = twin(CLOSED);
     let last = header(closed).packet_count() - 1;
     let whole = payload(closed, last);

@@ -269,7 +269,56 @@ fn coded_attributes() -> Vec<Variant> {
             EncodeOptions { normal_bits: 4, ..coded(PacketSize::Fixed(1)) },
             "normals without seams, of the fewest bits, where faces are pinched and vertices have none",
         ),
+        (
+            "0057-coded-wedges",
+            colour_by_face(),
+            coded(PacketSize::Fixed(10)),
+            "a tetrahedron, each face of another colour: three wedges at every vertex",
+        ),
+        (
+            "0058-coded-no-faces",
+            no_faces(),
+            coded(PacketSize::Fixed(2)),
+            "vertices that collapse, but no face",
+        ),
+        (
+            "0059-coded-greatest",
+            greatest(),
+            options(Mode::Coded, Positions::Quantised(10), PacketSize::Fixed(3)),
+            "positions up to the greatest number: the last point of an axis would lie beyond it",
+        ),
     ]
+}
+
+/// A tetrahedron with a colour for each face.
+fn colour_by_face() -> ProgressiveMesh {
+    let faces: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let mut corners: Vec<(u32, u8)> = (0..).zip(faces).flat_map(|(k, face)| face.map(|v| (v, k))).collect();
+    corners.sort_unstable();
+    let wedge =
+        |vertex: u32, face: u8| corners.iter().position(|&c| c == (vertex, face)).expect("a corner") as u32;
+    let mut mesh = split(&[0], &[]);
+    mesh.faces = (0..).zip(faces).map(|(k, face)| face.map(|v| wedge(v, k))).collect();
+    mesh.wedges = Wedges {
+        vertices: corners.iter().map(|c| c.0).collect(),
+        colours: corners.iter().map(|c| [80 * c.1, 200 - 40 * c.1, c.1, 255]).collect(),
+        ..Wedges::default()
+    };
+    // Wedges of vertex 3, of faces 1 to 3: those faces vanish, or, face 2, go on with the wedge of face 1.
+    mesh.wedge_collapse = vec![wedge(0, 1), wedge(0, 1), wedge(0, 3)];
+    mesh
+}
+
+fn no_faces() -> ProgressiveMesh {
+    split(&[0, 0, 2], &[])
+}
+
+/// A triangle in a box that ends, along the second axis, 1.6 steps behind its begin and at the greatest number.
+fn greatest() -> ProgressiveMesh {
+    let mut mesh = split(&[], &[[0, 1, 2]]);
+    let low = (f64::from(f32::MAX) - 1.6 * 3e38 / 1023.0) as f32;
+    mesh.positions = vec![[0.0, low, 0.0], [3e38, low, 0.0], [0.0, f32::MAX, 0.0]];
+    mesh
 }
 
 /// A vertex from which three descend in one packet: a corner becomes the second of them, another the only one of its own.
