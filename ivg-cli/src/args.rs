@@ -192,10 +192,19 @@ pub(crate) enum RendererArgument {
 pub(crate) enum IndirectArgument {
     /// From the irradiance vector grid.
     Grid,
-    /// Path traced: slow, the reference.
+    /// Gathered at each pixel from surfaces lit by the grid: slower, its errors are blurred.
+    Gather,
+    /// Path traced: slowest, the reference.
     Path,
     /// No indirect light.
     None,
+}
+
+impl IndirectArgument {
+    /// Whether the picture is made from an irradiance vector grid.
+    pub(crate) fn needs_grid(self) -> bool {
+        matches!(self, Self::Grid | Self::Gather)
+    }
 }
 
 #[derive(Debug, Args)]
@@ -230,7 +239,7 @@ pub(crate) struct RenderArguments {
     /// file [default: the finest level].
     #[arg(long, value_name = "PIXELS", value_parser = crate::scene_args::positive)]
     pub(crate) pixel_error: Option<f32>,
-    /// Samples a pixel of the path-traced reference.
+    /// Samples a pixel where light is gathered or path traced.
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = crate::scene_args::count::<u32>)]
     pub(crate) samples: u32,
     #[command(flatten)]

@@ -3,9 +3,10 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
-use ivg_bake::reference::{Oracle, Sampling, Shown};
+use ivg_bake::BakeError;
+use ivg_bake::reference::{KnownLight, Oracle, Picture, Sampling, Shown};
 use ivg_format::{Encoding, Quantity};
-use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction};
+use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction, SpatialFilter};
 use ivg_render::{Image, RenderOptions, RenderScene};
 use ivg_scene::plan::{self, PlanOptions};
 use ivg_scene::{Camera, EffectPlan, Scene};
@@ -36,23 +37,47 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     let camera = camera(arguments, scene);
     let triangles = source.loaded.flat.triangles.len();
     let start = Instant::now();
-    let (image, who) = if arguments.indirect == IndirectArgument::Path {
-        (path_traced(arguments, &source.loaded, &camera)?, "path tracer".to_owned())
-    } else {
-        let renderer = Renderer::choose(arguments.renderer)?;
-        let mut render_scene = RenderScene::from_scene(scene, &source.loaded.flat, camera);
-        let mut options = RenderOptions::for_plan(&source.plan, arguments.size.width, arguments.size.height);
-        match source.grid {
-            Some((grid, reconstruction)) => {
-                options.reconstruction = reconstruction;
-                // A scene that was streamed has its grid filled already.
-                let filled = grid.is_filled();
-                render_scene.grid =
-                    Some(if filled { grid } else { ivg_grid::fill(&grid, &FillOptions::default()) });
-            }
-            None => options.indirect = false,
+    // A scene that was streamed has its grid filled already.
+    let grid = source.grid.map(|(grid, reconstruction)| {
+        let filled = grid.is_filled();
+        (if filled { grid } else { ivg_grid::fill(&grid, &FillOptions::default()) }, reconstruction)
+    });
+    let (image, who) = match (arguments.indirect, grid) {
+        (IndirectArgument::Path, _) => {
+            let traced = traced(arguments, &source.loaded, |oracle, size, sampling, bar| {
+                oracle.render(&camera, size, Shown::All, sampling, bar)
+            })?;
+            (traced, "path tracer".to_owned())
         }
-        (renderer.render(&render_scene, &options)?, renderer.name())
+        (IndirectArgument::Gather, Some((grid, reconstruction))) => {
+            let light = KnownLight {
+                irradiance: &|point, normal| {
+                    grid.irradiance(point, normal, reconstruction, SpatialFilter::default())
+                },
+                shortest_flight: grid.lattice().step.into_iter().fold(0.0, f64::max),
+            };
+            let gathered = traced(arguments, &source.loaded, |oracle, size, sampling, bar| {
+                oracle.render_gathering(&camera, size, &light, sampling, bar)
+            })?;
+            (gathered, "path tracer, gathering from the grid".to_owned())
+        }
+        (IndirectArgument::Gather, None) => {
+            return Err(Failure::usage("--indirect gather needs a grid, and the packed scene has none"));
+        }
+        (IndirectArgument::Grid | IndirectArgument::None, grid) => {
+            let renderer = Renderer::choose(arguments.renderer)?;
+            let mut render_scene = RenderScene::from_scene(scene, &source.loaded.flat, camera);
+            let mut options =
+                RenderOptions::for_plan(&source.plan, arguments.size.width, arguments.size.height);
+            match grid {
+                Some((grid, reconstruction)) => {
+                    options.reconstruction = reconstruction;
+                    render_scene.grid = Some(grid);
+                }
+                None => options.indirect = false,
+            }
+            (renderer.render(&render_scene, &options)?, renderer.name())
+        }
     };
     let exposure = arguments.exposure.unwrap_or_else(|| ivg_render::auto_exposure(&image));
     picture::write_png(&arguments.out, &image, exposure)?;
@@ -67,7 +92,6 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
 }
 
 fn open(arguments: &RenderArguments) -> Result<Source, Failure> {
-    let wants_grid = arguments.indirect == IndirectArgument::Grid;
     let path = Path::new(&arguments.source);
     if arguments.source.starts_with("http://") {
         let mut session =
@@ -95,7 +119,7 @@ fn open(arguments: &RenderArguments) -> Result<Source, Failure> {
         ));
     }
     let loaded = LoadedScene::load(path, arguments.lights.as_deref())?;
-    if !wants_grid {
+    if !arguments.indirect.needs_grid() {
         let plan = planned(&loaded);
         return Ok(Source { loaded, plan, grid: None });
     }
@@ -135,7 +159,7 @@ fn packed(
     }
     let loaded = LoadedScene::from_scene(scene)?;
     let plan = planned(&loaded);
-    let grid = grid.filter(|_| arguments.indirect == IndirectArgument::Grid);
+    let grid = grid.filter(|_| arguments.indirect.needs_grid());
     let grid = grid.map(|(grid, encoding)| (grid.clone(), Reconstruction::for_encoding(encoding)));
     Ok(Source { loaded, plan, grid })
 }
@@ -158,18 +182,23 @@ fn camera(arguments: &RenderArguments, scene: &Scene) -> Camera {
     }
 }
 
-fn path_traced(arguments: &RenderArguments, loaded: &LoadedScene, camera: &Camera) -> Result<Image, Failure> {
+/// A picture by following paths from the eye.
+fn traced(
+    arguments: &RenderArguments,
+    loaded: &LoadedScene,
+    trace: impl FnOnce(&Oracle<'_>, (u32, u32), Sampling, &BakeBar) -> Result<Picture, BakeError>,
+) -> Result<Image, Failure> {
     let oracle = Oracle::new(&loaded.scene, &loaded.flat).map_err(Failure::new)?;
     let sampling = Sampling {
         paths: arguments.samples,
         seed: arguments.bake.seed,
         threads: arguments.bake.threads.map(usize::from),
     };
-    let size = arguments.size;
-    let bar = BakeBar::new("trace paths", u64::from(size.width) * u64::from(size.height), "pixels");
-    let picture = oracle.render(camera, (size.width, size.height), Shown::All, sampling, &bar);
+    let size = (arguments.size.width, arguments.size.height);
+    let bar = BakeBar::new("trace paths", u64::from(size.0) * u64::from(size.1), "pixels");
+    let picture = trace(&oracle, size, sampling, &bar);
     bar.finish();
     let picture = picture.map_err(Failure::new)?;
     let pixels = picture.pixels.into_iter().map(Vec3::from_array).collect();
-    Ok(Image::new(size.width, size.height, pixels))
+    Ok(Image::new(size.0, size.1, pixels))
 }
