@@ -38,27 +38,30 @@ pub(super) fn class(x: u64) -> u32 {
 /// Numbers that [`divide`] divides by without dividing, and one more.
 const DIVISORS: usize = 2 * MOST + 8;
 
-/// ⌊2⁶⁴ / m⌋ + 1, or 2⁶⁴ / m where that is whole.
+/// Bits behind the point of a reciprocal.
+const RECIPROCAL_BITS: u32 = 36;
+
+/// 2³⁶ / m, rounded up.
 const RECIPROCALS: [u64; DIVISORS] = {
     let mut reciprocals = [0; DIVISORS];
-    let mut m = 2;
+    let mut m = 1;
     while m < DIVISORS {
-        reciprocals[m] = u64::MAX / m as u64 + 1;
+        reciprocals[m] = (1u64 << RECIPROCAL_BITS).div_ceil(m as u64);
         m += 1;
     }
     reciprocals
 };
 
-/// ⌊x / m⌋ for m from 1 on and x < 2⁵⁰.
+/// ⌊x / m⌋ for m from 1 on, x < 2²⁹ and x / m < 2²⁷.
 ///
-/// The reciprocal of n = 2 m, n < 2⁷, is too great by less than n / 2⁶⁴ of one, so that 2 x times it is too great by less than
-/// 2 x n / 2⁶⁴ < 2⁵⁸ / 2⁶⁴ of one, which is less than the 1 / n that a fraction is short of the next whole number.
+/// A reciprocal is too great by less than 2⁻³⁶, so that x times it is too great by less than 2²⁹ / 2³⁶ = 2⁻⁷, which is less than
+/// the 1 / m that a fraction is short of the next whole number.
 #[inline(always)]
-pub(super) fn divide(x: u64, m: u32) -> u64 {
-    debug_assert!(x < 1 << 50 && m > 0, "{x} / {m}");
-    match RECIPROCALS.get(2 * m as usize) {
-        Some(&reciprocal) => ((u128::from(2 * x) * u128::from(reciprocal)) >> 64) as u64,
-        None => x / u64::from(m),
+pub(super) fn divide(x: u32, m: u32) -> u32 {
+    debug_assert!(x < 1 << 29 && m > 0 && x / m < 1 << 27, "{x} / {m}");
+    match RECIPROCALS.get(m as usize) {
+        Some(&reciprocal) => ((u64::from(x) * reciprocal) >> RECIPROCAL_BITS) as u32,
+        None => x / m,
     }
 }
 
@@ -92,8 +95,8 @@ pub(super) fn residual<C: Coder>(
     class: u32,
     value: i32,
 ) -> i32 {
-    let shift = (class / 4).saturating_sub(5);
-    let context = if shift > 0 { 20 + class % 4 } else { class } as usize;
+    let shift = (class / 4).max(5) - 5;
+    let context = class.min(20 + class % 4) as usize;
     let half = (1i64 << shift) >> 1;
     let moved = i64::from(value) + half;
     let (whole, low) = (moved >> shift, (moved & ((1 << shift) - 1)) as u32);
@@ -163,19 +166,20 @@ impl Place {
     #[inline(always)]
     pub(super) fn new(neighbours: &[Point], sum: Point, parent: Cell, normal: [i64; 3]) -> Self {
         let count = neighbours.len().max(1) as u32;
-        // Cells that are there are not negative.
-        let mean: Cell = core::array::from_fn(|k| {
-            divide(2 * u64::from((sum[k] + parent[k]) as u32) + u64::from(count + 1), 2 * count + 2) as i32
-        });
-        let mut apart = [0u32; 3];
+        // Cells that are there are not negative; at most 35 × 2²⁰ × 2, which fits.
+        let mean = |k: usize| divide(2 * (sum[k] + parent[k]) as u32 + count + 1, 2 * count + 2) as i32;
+        let mean = [mean(0), mean(1), mean(2), 0];
+        let mut apart = [0u32; 4];
         for neighbour in neighbours {
-            for k in 0..3 {
+            for k in 0..4 {
                 apart[k] += neighbour[k].abs_diff(mean[k]);
             }
         }
-        let spreads = core::array::from_fn(|k| class(divide(8 * u64::from(apart[k]), count) + 1));
-        let height = divide((sum[3] >> 16) as u64, count) as u32;
-        let apart = divide(apart.iter().map(|&x| u64::from(x)).sum(), count) as u32;
+        let spread = |k: usize| class(u64::from(divide(8 * apart[k], count)) + 1);
+        let spreads = [spread(0), spread(1), spread(2)];
+        let height = divide((sum[3] >> 16) as u32, count);
+        let apart = divide(apart[0] + apart[1] + apart[2], count);
+        let mean = [mean[0], mean[1], mean[2]];
         // At most 24 bits are left of each component, so that every product below fits in 53.
         let bits = normal.iter().fold(0, |all, n| all | n.unsigned_abs()).max(1).ilog2() + 1;
         let normal = normal.map(|n| n >> bits.saturating_sub(24));

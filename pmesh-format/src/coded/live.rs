@@ -69,8 +69,11 @@ impl State {
         read?;
         // Corners only ever switch to later vertices: those that have switched are now at vertices of this packet.
         let earlier = 3 * entry.faces.start;
-        let slots = |vertex: u32| self.slots.of(vertex).iter().copied().filter(|&slot| slot < earlier);
-        mesh.switched.extend(entry.vertices.clone().flat_map(slots));
+        for vertex in entry.vertices.clone() {
+            for &slot in self.slots.of(vertex).iter().take_while(|&&slot| slot < earlier) {
+                mesh.switched.push(slot);
+            }
+        }
         if let Some(wedged) = &self.wedged {
             wedged.append(header, entry, &mut mesh);
         }

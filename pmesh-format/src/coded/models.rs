@@ -35,8 +35,8 @@ pub(super) struct Binary {
 
 /// 65,536 / (n + 1.6), rounded down, for n values seen.
 #[expect(clippy::indexing_slicing, reason = "a constant")]
-const RATES: [u16; BINARY_MOST as usize + 1] = {
-    let mut rates = [0; BINARY_MOST as usize + 1];
+const RATES: [u16; 64] = {
+    let mut rates = [0; 64];
     let mut n = 0;
     while n < rates.len() {
         rates[n] = (655_360 / (10 * n + 16)) as u16;
@@ -68,10 +68,10 @@ impl Binary {
     pub(super) fn update(&mut self, value: bool) {
         let p = i32::from(self.probability);
         let target = if value { (ONE as i32).wrapping_sub(BINARY_LEAST) } else { BINARY_LEAST };
-        let rate = RATES.get(usize::from(self.seen)).copied().unwrap_or(0);
+        let rate = RATES.get(usize::from(self.seen) & 63).copied().unwrap_or(0);
         // |difference| < 2¹⁵ and rate < 2¹⁶; the result lies between both.
         self.probability = p.wrapping_add(target.wrapping_sub(p).wrapping_mul(i32::from(rate)) >> 16) as u16;
-        self.seen = self.seen.saturating_add(1).min(BINARY_MOST);
+        self.seen = self.seen.wrapping_add(u16::from(self.seen < BINARY_MOST));
     }
 }
 

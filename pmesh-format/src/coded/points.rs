@@ -47,6 +47,18 @@ impl Points {
         if self.is_wide { self.with_highs(point, vertex) } else { point }
     }
 
+    /// What [`Points::scale`] is in, of the first vertices.
+    #[inline(always)]
+    pub(super) fn few(&self, count: usize) -> &[[u16; 4]] {
+        &self.lows[..count]
+    }
+
+    /// The scale of a vertex.
+    #[inline(always)]
+    pub(super) fn scale([.., packed]: [u16; 4]) -> usize {
+        usize::from(packed & ((1 << SCALE_BITS) - 1))
+    }
+
     /// Has a point brought near.
     #[inline(always)]
     pub(super) fn fetch(&self, vertex: u32) {

@@ -45,22 +45,32 @@ pub(super) fn order(spokes: &mut [Spoke; MOST], count: usize) -> bool {
     true
 }
 
+/// Where faces that go round once are among those given, in order; `None` if they do not.
+#[cold]
+#[inline(never)]
+pub(super) fn search(outs: &[u32; MOST], backs: &[u32; MOST], count: usize) -> Option<[u8; MOST]> {
+    let mut spokes: [Spoke; MOST] =
+        core::array::from_fn(|k| Spoke { place: k as u32, out: outs[k], back: backs[k] });
+    order(&mut spokes, count).then(|| spokes.map(|spoke| spoke.place as u8))
+}
+
 /// Places in a table of faces by the lowest bits of their outs: a power of two.
 const TABLE: usize = 128;
 
-/// Whether up to [`FEW`] faces go round once; where each is then among those given, in order, four bits each. Behind the last
-/// one `outs` has numbers that no vertex has. `None` is no answer: each face knows one that follows it, but not the one.
+/// Whether faces, `N` at most, go round once; where each is then among those given, in order. Behind the last one `outs` has
+/// numbers that no vertex has. `None` is no answer: each face knows one that follows it, but not the one.
 #[inline(always)]
-pub(super) fn round_few(outs: &[u32; FEW], backs: &[u32; FEW], count: usize) -> Option<u32> {
+pub(super) fn round<const N: usize>(outs: &[u32; N], backs: &[u32; N], count: usize) -> Option<[u8; N]> {
     let mut table = [0u8; TABLE];
     // The first of those with the same out, or the same lowest bits, comes last and stays.
-    for (k, &out) in outs.iter().enumerate().rev() {
+    for (k, &out) in outs.iter().enumerate().take(if N == FEW { N } else { count }).rev() {
         table[out as usize % TABLE] = k as u8;
     }
-    let (mut order, mut at, mut seen) = (0, 0, 1u32);
-    for k in 1..count {
-        let back = backs[at & (FEW - 1)];
-        at = usize::from(table[back as usize % TABLE]) & (FEW - 1);
+    let mut order = [0; N];
+    let (mut at, mut seen) = (0, 1u32);
+    for to in order.get_mut(1..count)? {
+        let back = backs[at & (N - 1)];
+        at = usize::from(table[back as usize % TABLE]) & (N - 1);
         if outs[at] != back {
             at = outs.iter().position(|&out| out == back)?;
         }
@@ -68,9 +78,9 @@ pub(super) fn round_few(outs: &[u32; FEW], backs: &[u32; FEW], count: usize) -> 
             return None;
         }
         seen |= 1 << at;
-        order |= (at as u32) << (4 * k);
+        *to = at as u8;
     }
-    (count >= 2 && backs[at & (FEW - 1)] == outs[0]).then_some(order)
+    (count >= 2 && backs[at & (N - 1)] == outs[0]).then_some(order)
 }
 
 /// Where faces do not go round: first those fans that have a beginning, by the place of their first face, then what is left.

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::cut::Run;
 use super::geometry::{Cell, Place, apart, cross, difference, divide, raw};
 use super::rans::Coder;
-use super::ring::{FEW, MOST, Spoke, order, round_few};
+use super::ring::{FEW, MOST, Spoke, order, round, search};
 use super::walk::{Bounds, Source};
 use super::{Changes, Fault, LENGTH, Point, SLOTS_A_BYTE, Shape, State, cell_of};
 use crate::code::codes;
@@ -88,16 +88,18 @@ impl State {
         }
     }
 
-    /// The vertices that follow the parent in the face of a slot.
+    /// The vertices that follow another in the face of one of its slots.
     #[inline(always)]
-    fn beside(&self, slot: u32) -> [u32; 2] {
-        let corners = self.corners.as_flattened();
-        let slot = slot as usize;
-        let corner = slot % 3;
-        [
-            corners[if corner == 2 { slot - 2 } else { slot + 1 }],
-            corners[if corner == 0 { slot + 2 } else { slot - 1 }],
-        ]
+    fn beside(&self, vertex: u32, slot: u32) -> [u32; 2] {
+        // Its corners are different, so that there is no need to ask which of them the slot is.
+        let [a, b, c] = self.corners[slot as usize / 3];
+        if a == vertex {
+            [b, c]
+        } else if b == vertex {
+            [c, a]
+        } else {
+            [a, b]
+        }
     }
 
     /// With so few faces that none of the steps needs to know how many exactly.
@@ -113,19 +115,19 @@ impl State {
         // What is left over are copies of the first slot, whose face nothing follows.
         let (mut outs, mut backs) = ([u32::MAX; FEW], [0; FEW]);
         for k in 0..FEW {
-            let [out, back] = self.beside(list[if k < list.len() { k } else { 0 }]);
+            let [out, back] = self.beside(step.parent, list[if k < list.len() { k } else { 0 }]);
             outs[k] = if k < count { out } else { u32::MAX };
             backs[k] = back;
         }
-        let Some(order) = round_few(&outs, &backs, count) else {
+        let Some(order) = round(&outs, &backs, count) else {
             return self.code_many(coder, step, changes);
         };
         let mut ring = [0; FEW];
         for (k, to) in ring.iter_mut().enumerate() {
-            let at = if k < count { order >> (4 * k) & 7 } else { order & 7 };
-            *to = outs[at as usize];
+            let at = if k < count { order[k] } else { order[0] };
+            *to = outs[usize::from(at) & (FEW - 1)];
         }
-        let place = |k: usize| order >> (4 * k) & 7;
+        let place = |k: usize| u32::from(order[k & (FEW - 1)]);
         self.code_ring::<_, _, FEW, { FEW + 2 }>(coder, step, changes, &ring, count, place)
     }
 
@@ -169,13 +171,15 @@ impl State {
         let (mut moved, mut inner) = (0u32, 0);
         let mut k = run.first & (N - 1);
         neighbours.add(points[k]);
-        let edge = |k: usize| difference(cell_of(points[k]), here);
+        let mut edge = difference(cell_of(points[k]), here);
         for nth in 0..run.count {
             moved |= 1 << place(k);
             inner += if nth > 0 { lengths[k] } else { 0 };
             let next = wrap(k + 1) & (N - 1);
-            neighbours.turn(edge(k), edge(next));
+            let following = difference(cell_of(points[next]), here);
+            neighbours.turn(edge, following);
             neighbours.add(points[next]);
+            edge = following;
             k = next;
         }
         let all = lengths.iter().sum::<i32>();
@@ -219,21 +223,25 @@ impl State {
         if count > MOST {
             return self.code_irregular(coder, step, changes, false);
         }
-        let mut spokes = [Spoke::default(); MOST];
-        self.spokes(step.parent, &mut spokes);
-        if !order(&mut spokes, count) {
-            return self.code_irregular(coder, step, changes, false);
+        let (mut outs, mut backs) = ([u32::MAX; MOST], [0; MOST]);
+        for (k, &slot) in self.slots.of(step.parent).iter().enumerate().take(MOST) {
+            [outs[k], backs[k]] = self.beside(step.parent, slot);
         }
+        let Some(order) = round(&outs, &backs, count).or_else(|| search(&outs, &backs, count)) else {
+            return self.code_irregular(coder, step, changes, false);
+        };
         let mut ring = [step.parent; MOST];
-        ring.iter_mut().zip(&spokes[..count]).for_each(|(to, spoke)| *to = spoke.out);
-        let place = |k: usize| spokes[k & (MOST - 1)].place;
+        for (to, &at) in ring.iter_mut().zip(&order).take(count) {
+            *to = outs[usize::from(at) & (MOST - 1)];
+        }
+        let place = |k: usize| u32::from(order[k & (MOST - 1)]);
         self.code_ring::<_, _, MOST, MOST_KNOWN>(coder, step, changes, &ring, count, place)
     }
 
     /// The faces of a vertex, as its slots stand.
     fn spokes(&self, vertex: u32, to: &mut [Spoke]) {
         for ((place, &slot), to) in (0..).zip(self.slots.of(vertex)).zip(to) {
-            let [out, back] = self.beside(slot);
+            let [out, back] = self.beside(vertex, slot);
             *to = Spoke { place, out, back };
         }
     }
@@ -371,7 +379,7 @@ impl State {
         changes.shapes.push((parent, old));
         let parent_height = (u32::from(height) + u32::from(old.height)) / 2;
         let history = 2 * self.packets;
-        let parent_scale = scale(divide(u64::from(lengths + apart(cell, here) as u32), edges) as u32);
+        let parent_scale = scale(divide(lengths + apart(cell, here) as u32, edges));
         let new = Shape { scale: parent_scale, height: parent_height as u8, history: history | 1 };
         self.set_shape(parent, new);
         Ok((cell, Shape { scale: scale(place.reach(cell)), height, history }))

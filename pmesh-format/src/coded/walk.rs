@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use super::exact::Exact;
 use super::geometry::{Cell, raw};
+use super::points::Points;
 use super::rans::Coder;
 use super::split::Step;
 use super::{Changes, Fault, LENGTH, Shape, State};
@@ -18,6 +19,9 @@ const BATCH: usize = 64;
 
 /// How many splits ahead what they need of vertices is fetched; of faces twice as many.
 const AHEAD: usize = 6;
+
+/// Vertices of which not all that is known fits into the caches next to a core: some 70 bytes each.
+const MANY: usize = 1 << 15;
 
 /// What a writer knows; the reader's knows nothing, and nobody looks at what it says.
 pub(super) trait Source: Copy {
@@ -114,35 +118,25 @@ impl State {
         if extent.vertices.start < self.base {
             self.code_base(coder, source, extent, bounds, changes)?;
         }
-        let (mut parent, mut times) = (0u32, 0usize);
+        let mut place = (0, 0);
         let mut vertex = extent.vertices.start.max(self.base);
         let mut parents = [0u32; BATCH];
         while vertex < end {
             // The parents of several vertices, then these.
             let most = BATCH.min((end - vertex) as usize);
-            let mut found = 0;
-            while found < most && parent < vertex {
-                let model = self.parent_context(parent, times);
-                let splits = S::KNOWS && source.parent(vertex + found as u32) == parent;
-                if coder.bit(&mut self.models.parents[model], splits) {
-                    parents[found & (BATCH - 1)] = parent;
-                    found += 1;
-                    times = (times + 1).min(2);
-                } else {
-                    parent += 1;
-                    times = 0;
-                }
-            }
+            let found = self.code_parents(coder, source, vertex, &mut place, &mut parents[..most]);
             if found == 0 {
                 return Err((codes::PARENT, 0));
             }
-            parents[..found].iter().take(2 * AHEAD).for_each(|&parent| self.fetch_faces(parent));
-            parents[..found].iter().take(AHEAD).for_each(|&parent| self.fetch_neighbours(parent));
+            // Few vertices are near anyway.
+            let fetched = if end as usize >= MANY { &parents[..found] } else { &[] };
+            fetched.iter().take(2 * AHEAD).for_each(|&parent| self.fetch_faces(parent));
+            fetched.iter().take(AHEAD).for_each(|&parent| self.fetch_neighbours(parent));
             for (k, &parent) in parents[..found].iter().enumerate() {
-                if let Some(&later) = parents[..found].get(k + 2 * AHEAD) {
+                if let Some(&later) = fetched.get(k + 2 * AHEAD) {
                     self.fetch_faces(later);
                 }
-                if let Some(&later) = parents[..found].get(k + AHEAD) {
+                if let Some(&later) = fetched.get(k + AHEAD) {
                     self.fetch_neighbours(later);
                 }
                 let step = Step { source, extent, bounds: &bounds, vertex, parent };
@@ -182,18 +176,45 @@ impl State {
         }
     }
 
-    /// Which model tells whether a vertex is split (once more).
-    #[inline(always)]
-    fn parent_context(&self, parent: u32, times: usize) -> usize {
-        let Shape { scale, history, .. } = self.shape(parent);
-        let packets = self.packets - (history >> 1);
-        let history = match times {
-            0 if history & 1 == 0 => packets.min(3) as usize,
-            0 => 4 + usize::from(packets > 1),
-            _ => 5 + times,
-        };
-        let faces = self.slots.count(parent).clamp(3, 11) - 3;
-        (history * 9 + faces) * 16 + usize::from(scale)
+    /// Asks whether vertices are split, from one on that has been split so many times, until there are no more before `vertex`
+    /// or all `parents` of the vertices from there on are found; how many are.
+    #[inline(never)]
+    fn code_parents<C: Coder, S: Source>(
+        &mut self,
+        coder: &mut C,
+        source: &S,
+        vertex: u32,
+        place: &mut (usize, usize),
+        parents: &mut [u32],
+    ) -> usize {
+        // What is in use all the time: no vertex comes meanwhile.
+        let (mut inner, (mut parent, mut times)) = (core::mem::take(coder), *place);
+        let count = vertex as usize;
+        let (points, histories) = (self.points.few(count), &self.histories[..count]);
+        let (slots, models) = (&self.slots, &mut self.models.parents);
+        let mut found = 0;
+        while found < parents.len() && parent < count {
+            let history = histories[parent];
+            let packets = self.packets - (history >> 1);
+            let history = match times {
+                0 if history & 1 == 0 => packets.min(3) as usize,
+                0 => 4 + usize::from(packets > 1),
+                _ => 5 + times,
+            };
+            let faces = slots.count(parent as u32).clamp(3, 11) - 3;
+            let model = (history * 9 + faces) * 16 + Points::scale(points[parent]);
+            let splits = S::KNOWS && source.parent(vertex + found as u32) == parent as u32;
+            if inner.bit(&mut models[model], splits) {
+                parents[found] = parent as u32;
+                found += 1;
+                times = (times + 1).min(2);
+            } else {
+                parent += 1;
+                times = 0;
+            }
+        }
+        (*coder, *place) = (inner, (parent, times));
+        found
     }
 
     /// The vertices and faces of the base.

@@ -1,6 +1,6 @@
 use ivg_wire::splitmix64;
 
-use super::{FEW, MOST, Spoke, order, round_few};
+use super::{FEW, MOST, Spoke, order, round, search};
 use crate::coded::geometry::divide;
 
 #[test]
@@ -25,13 +25,23 @@ fn a_few_faces_have_the_order_that_any_number_has() {
         for k in 0..count {
             spokes[k] = Spoke { place: k as u32, out: outs[k], back: backs[k] };
         }
-        let round = order(&mut spokes, count);
-        if let Some(found) = round_few(&outs, &backs, count) {
+        let is_round = order(&mut spokes, count);
+        let (mut many_outs, mut many_backs) = ([u32::MAX; MOST], [0; MOST]);
+        many_outs[..FEW].copy_from_slice(&outs);
+        many_backs[..FEW].copy_from_slice(&backs);
+        let searched = search(&many_outs, &many_backs, count);
+        assert_eq!(searched.is_some(), is_round, "{outs:?} {backs:?}");
+        let few = round(&outs, &backs, count);
+        let many = round(&many_outs, &many_backs, count);
+        assert_eq!(few, many.map(|many| core::array::from_fn(|k| many[k])), "{outs:?} {backs:?}");
+        if let (Some(found), Some(searched)) = (few, searched) {
             answers += 1;
-            assert!(round, "{outs:?} {backs:?}");
             for (k, spoke) in spokes.iter().enumerate().take(count) {
-                assert_eq!(found >> (4 * k) & 15, spoke.place, "{outs:?} {backs:?}");
+                let place = [found[k], searched[k]].map(u32::from);
+                assert_eq!(place, [spoke.place; 2], "{outs:?} {backs:?}");
             }
+        } else {
+            assert!(few.is_none(), "{outs:?} {backs:?}");
         }
     }
     assert!(answers > 5_000, "{answers} rings");
@@ -40,11 +50,12 @@ fn a_few_faces_have_the_order_that_any_number_has() {
 #[test]
 fn dividing_by_reciprocals_is_exact() {
     for m in 1..80u32 {
-        for k in 0..500u64 {
-            let any = splitmix64(k, m.into()) >> 14;
-            let multiple = any / u64::from(m) * u64::from(m);
-            for x in [any, multiple, multiple.saturating_sub(1), (1 << 50) - 1 - k, k] {
-                assert_eq!(divide(x, m), x / u64::from(m), "{x} / {m}");
+        for k in 0..500u32 {
+            let most = (m.min(4) << 27) - 1;
+            let any = (splitmix64(k.into(), m.into()) >> 35) as u32 % most;
+            let multiple = any / m * m;
+            for x in [any, multiple, multiple.saturating_sub(1), most - k, k] {
+                assert_eq!(divide(x, m), x / m, "{x} / {m}");
             }
         }
     }
