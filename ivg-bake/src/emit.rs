@@ -82,6 +82,8 @@ pub(crate) struct Arrival {
     pub(crate) irradiance: Vec3,
     /// Cosine at which the light leaves its surface, in (0, 1]; 1 where it has none.
     pub(crate) cosine: f32,
+    /// Whether it comes from the image of a sky.
+    pub(crate) from_sky: bool,
 }
 
 /// How much short of a light's surface a shadow ray ends, as a share of its length.
@@ -277,7 +279,14 @@ impl Emitters {
             Kind::Sky => return None,
         };
         let irradiance = (strength.as_dvec3() * (factor * weight)).as_vec3();
-        (irradiance.max_element() > 0.0).then_some(Arrival { direction, distance, irradiance, cosine })
+        let from_sky = matches!(light.kind, Kind::SkyImage);
+        (irradiance.max_element() > 0.0).then_some(Arrival {
+            direction,
+            distance,
+            irradiance,
+            cosine,
+            from_sky,
+        })
     }
 }
 

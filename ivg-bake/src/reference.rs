@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use ivg_grid::harmonics::COEFFICIENTS;
 use ivg_scene::{Camera, FlatScene, Scene};
 
-use crate::estimate::gather::{Batches, Mean};
+use crate::estimate::gather::{Batches, Known, Mean};
 use crate::estimate::vertex_gather::{self, RADIANCE_NUMBERS, VECTOR_NUMBERS};
 use crate::overlap::closest_point;
 use crate::sampling::rng::{Purpose, Stream};
@@ -76,6 +76,22 @@ pub enum Shown {
     All,
     /// Only what the grid stands for: light reflected at least once before the surface seen, and the sky's.
     Indirect,
+}
+
+/// Indirect light that is known at surfaces, as from a grid: what [`Oracle::render_gathering`] ends its paths with.
+pub struct KnownLight<'a> {
+    /// Indirect irradiance of a surface at a point in world space \[m\] with a unit normal, light of the sky included: linear RGB
+    /// \[W/m²\].
+    pub irradiance: &'a (dyn Fn(DVec3, Vec3) -> Vec3 + Sync),
+    /// A flight shorter than this goes on from the surface that it meets \[m\]. An edge of a grid's cell keeps the grid's errors
+    /// in corners out of the picture.
+    pub shortest_flight: f64,
+}
+
+impl core::fmt::Debug for KnownLight<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("KnownLight").field("shortest_flight", &self.shortest_flight).finish_non_exhaustive()
+    }
 }
 
 /// A picture: linear RGB radiance \[W/(m² sr)\], row by row from the top.
@@ -214,8 +230,49 @@ impl<'a> Oracle<'a> {
         sampling: Sampling,
         monitor: &dyn Monitor,
     ) -> Result<Picture, BakeError> {
-        let view = View::new(camera, f64::from(width) / f64::from(height.max(1)));
         let eye = self.stage.space.to_bake(camera.eye);
+        self.picture(camera, (width, height), sampling, monitor, |direction, stream| match shown {
+            Shown::All => self.stage.radiance(eye, direction, stream, true),
+            Shown::Indirect => self.reflected_indirect(eye, direction, stream),
+        })
+    }
+
+    /// A picture of `width` × `height` pixels of all light, whose paths end at the second surface with light that is known
+    /// there (final gathering, as RR-6983 has it): the errors of a grid are blurred by a reflection, for a fraction of the work
+    /// of [`Oracle::render`].
+    ///
+    /// # Errors
+    ///
+    /// [`BakeError::Cancelled`]; the monitor's progress counts pixels.
+    pub fn render_gathering(
+        &self,
+        camera: &Camera,
+        size: (u32, u32),
+        light: &KnownLight<'_>,
+        sampling: Sampling,
+        monitor: &dyn Monitor,
+    ) -> Result<Picture, BakeError> {
+        let space = self.stage.space;
+        let eye = space.to_bake(camera.eye);
+        let known = Known {
+            irradiance: &|point, normal| (light.irradiance)(space.to_world(point), normal),
+            shortest_flight: (light.shortest_flight * space.scale()) as f32,
+        };
+        self.picture(camera, size, sampling, monitor, |direction, stream| {
+            self.stage.radiance_until(eye, direction, stream, true, Some(&known))
+        })
+    }
+
+    /// A picture of which each pixel is the mean of `sample`, given a direction from the eye.
+    fn picture(
+        &self,
+        camera: &Camera,
+        (width, height): (u32, u32),
+        sampling: Sampling,
+        monitor: &dyn Monitor,
+        sample: impl Fn(Vec3, &Stream) -> DVec3 + Sync,
+    ) -> Result<Picture, BakeError> {
+        let view = View::new(camera, f64::from(width) / f64::from(height.max(1)));
         let pixels = self.points(width as usize * height as usize, sampling, monitor, |pixel| {
             let (x, y) = (pixel as u32 % width, pixel as u32 / width);
             let mut sum = DVec3::ZERO;
@@ -226,10 +283,7 @@ impl<'a> Oracle<'a> {
                     (f64::from(at) + f64::from(jitter)) / f64::from(size) * 2.0 - 1.0
                 };
                 let direction = view.direction(place(x, u[0], width), -place(y, u[1], height));
-                sum += match shown {
-                    Shown::All => self.stage.radiance(eye, direction, &stream, true),
-                    Shown::Indirect => self.reflected_indirect(eye, direction, &stream),
-                };
+                sum += sample(direction, &stream);
             }
             (sum / f64::from(sampling.paths)).as_vec3().to_array()
         })?;

@@ -36,7 +36,6 @@ impl Space {
     }
 
     /// A position in bake space in world space \[m\].
-    #[cfg(test)]
     pub(crate) fn to_world(self, bake: Vec3) -> DVec3 {
         bake.as_dvec3() / self.scale + self.centre
     }

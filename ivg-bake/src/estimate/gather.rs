@@ -105,6 +105,23 @@ impl Batches {
     }
 }
 
+/// Light from elsewhere in place of the rest of a path (final gathering, RR-6983): what a path would find beyond its second
+/// surface or a later one.
+pub(crate) struct Known<'a> {
+    /// Indirect irradiance of a surface at a point of bake space with a unit normal, light of the sky included \[W/m²\].
+    pub(crate) irradiance: &'a (dyn Fn(Vec3, Vec3) -> Vec3 + Sync),
+    /// A flight shorter than this does not end a path: in a corner an error of one surface's light would show on the other
+    /// \[bake units\].
+    pub(crate) shortest_flight: f32,
+}
+
+impl<'a> Known<'a> {
+    /// What ends a path that has reached its `bounce`th surface by a flight of that length, if something does.
+    fn ends(known: Option<&'a Self>, bounce: u32, flight: f32) -> Option<&'a Self> {
+        known.filter(|known| bounce > 1 && flight >= known.shortest_flight)
+    }
+}
+
 impl Stage<'_> {
     /// One sample of the indirect irradiance vectors at a point of bake space, `[hemisphere][rgb][xyz]` flattened \[W/m²\]:
     /// a direction even over the sphere, of the light along it all but the emission of the first surface.
@@ -149,8 +166,20 @@ impl Stage<'_> {
     /// One sample of the radiance that arrives at `origin` from `direction` \[W/(m² sr)\]. Without `direct`, what the first
     /// surface emits is left out (the sky is not).
     pub(crate) fn radiance(&self, origin: Vec3, direction: Vec3, stream: &Stream, direct: bool) -> DVec3 {
+        self.radiance_until(origin, direction, stream, direct, None)
+    }
+
+    /// As [`Stage::radiance`]; where light is `known`, paths end.
+    pub(crate) fn radiance_until(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        stream: &Stream,
+        direct: bool,
+        known: Option<&Known<'_>>,
+    ) -> DVec3 {
         if let Some(lobes) = self.surfaces.lobes() {
-            return self.radiance_of_mixtures(lobes, (origin, direction), stream, direct);
+            return self.radiance_of_mixtures(lobes, (origin, direction), stream, direct, known);
         }
         let (mut origin, mut direction) = (origin, direction);
         let (mut radiance, mut throughput) = (DVec3::ZERO, DVec3::ONE);
@@ -171,7 +200,11 @@ impl Stage<'_> {
             if throughput.max_element() <= 0.0 {
                 return radiance;
             }
-            radiance += throughput * self.direct(origin, side, stream, bounce) / PI;
+            let end = Known::ends(known, bounce, hit.distance);
+            radiance += throughput * self.direct(origin, side, (stream, bounce), end.is_none()) / PI;
+            if let Some(known) = end {
+                return radiance + throughput * (known.irradiance)(origin, side).as_dvec3() / PI;
+            }
             let u = stream.uniforms(bounce, Purpose::Reflection);
             if bounce > SURE_BOUNCES {
                 let kept = albedo.max_element().min(1.0);
@@ -185,11 +218,15 @@ impl Stage<'_> {
         radiance
     }
 
-    /// One sample of the direct irradiance of a surface with unit normal `side`, without the sky \[W/m²\].
-    pub(crate) fn direct(&self, origin: Vec3, side: Vec3, stream: &Stream, step: u32) -> DVec3 {
+    /// One sample of the direct irradiance of a surface with unit normal `side`, without an even sky and, on wish, without the
+    /// image of one \[W/m²\].
+    fn direct(&self, origin: Vec3, side: Vec3, (stream, step): (&Stream, u32), with_image: bool) -> DVec3 {
         let Some(light) = self.emitters.arrive(origin, stream, step) else { return DVec3::ZERO };
         let cos = side.dot(light.direction);
-        if cos <= 0.0 || self.accel.occluded(origin, light.direction, light.distance) {
+        if cos <= 0.0
+            || (light.from_sky && !with_image)
+            || self.accel.occluded(origin, light.direction, light.distance)
+        {
             return DVec3::ZERO;
         }
         light.irradiance.as_dvec3() * f64::from(cos)

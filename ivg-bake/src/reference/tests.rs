@@ -1,10 +1,11 @@
 use core::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
-use ivg_scene::{Camera, LightKind, Material};
+use ivg_scene::{Camera, FlatScene, LightKind, Material, Scene};
 
-use super::{GatheredVectors, Oracle, Sampling, Shown};
+use super::{GatheredVectors, KnownLight, Oracle, Sampling, Shown};
 use crate::cases::{SceneBuilder, lit_rectangle_irradiance, lit_rectangle_scene};
+use crate::estimate::gather::Mean;
 use crate::{BakeOptions, Silent, bake};
 
 const SAMPLING: Sampling = Sampling { paths: 30_000, seed: 7, threads: Some(2) };
@@ -197,6 +198,62 @@ fn pictures_show_emission_and_do_not_depend_on_threads() {
     // deviation near its mean: 1 %; five of them.
     assert!((mean(&picture) - 4.0).abs() < 0.2, "{}", mean(&picture));
     assert!((mean(&render(Shown::Indirect, 2)) - 1.0).abs() < 0.05, "{}", mean(&render(Shown::Indirect, 2)));
+}
+
+/// A corner of a room under the image of a sky, with a lamp, and on wish a mirror and half a mirror: light of every kind that the
+/// end of a path could count twice or leave out.
+fn open_room(mirrors: bool) -> (Scene, FlatScene) {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(0.6, 0.0, true);
+    let lamp = builder.material(0.2, 3.0, true);
+    builder.quad(Vec3::ZERO, Vec3::X, Vec3::Y, wall);
+    builder.quad(Vec3::ZERO, Vec3::Y, Vec3::Z, wall);
+    builder.quad(Vec3::new(0.6, 0.6, 0.7), Vec3::X * 0.3, Vec3::Y * 0.3, lamp);
+    if mirrors {
+        let half =
+            Material { specular: 0.5, albedo: Vec3::splat(0.4), roughness: 0.0, ..Material::default() };
+        let half = builder.any_material(Material { two_sided: true, ..half });
+        builder.quad(Vec3::ZERO, Vec3::Z, Vec3::X, half);
+    }
+    builder.sky_image([1.0, 0.2, 0.5, 0.1]);
+    builder.build()
+}
+
+/// With light that is truly what arrives (by a path from there), paths that end at the second surface are as right as paths
+/// that go on; so are those that go on after short flights.
+#[test]
+fn gathering_known_light_gives_the_picture() {
+    for (mirrors, shortest_flight) in [(false, 0.0), (true, 0.0), (true, 0.4)] {
+        let (scene, flat) = open_room(mirrors);
+        let oracle = Oracle::new(&scene, &flat).unwrap();
+        let camera = Camera {
+            eye: DVec3::new(2.0, 1.6, 1.2),
+            target: DVec3::new(0.2, 0.2, 0.2),
+            up: DVec3::Z,
+            vertical_fov: 0.6,
+        };
+        let irradiance = |point: DVec3, normal: Vec3| {
+            let seed = (point.x + 3.0 * point.y + 7.0 * point.z).to_bits();
+            let one = Sampling { paths: 1, seed, threads: Some(1) };
+            oracle.irradiance(&[(point, normal)], one, &Silent).unwrap()[0].irradiance.as_vec3()
+        };
+        let light = KnownLight { irradiance: &irradiance, shortest_flight };
+        let mut means = [Mean::<1>::default(), Mean::<1>::default()];
+        for seed in 0..16 {
+            let sampling = |seed| Sampling { paths: 1024, seed, threads: Some(2) };
+            let whole = oracle.render(&camera, (6, 4), Shown::All, sampling(seed), &Silent).unwrap();
+            let gathered =
+                oracle.render_gathering(&camera, (6, 4), &light, sampling(seed + 100), &Silent).unwrap();
+            for (mean, picture) in means.iter_mut().zip([whole, gathered]) {
+                mean.add(&[picture.pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / 24.0]);
+            }
+        }
+        let [whole, gathered] = [&means[0], &means[1]].map(|mean| (mean.mean()[0], mean.standard_error()[0]));
+        let error = whole.1.hypot(gathered.1);
+        assert!(error < 0.004 * whole.0, "too noisy to tell: {whole:?}");
+        // Five standard errors.
+        assert!((whole.0 - gathered.0).abs() < 5.0 * error, "mirrors {mirrors}: {gathered:?} for {whole:?}");
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 
-use super::{MOST_BOUNCES, SURE_BOUNCES};
+use super::{Known, MOST_BOUNCES, SURE_BOUNCES};
 use crate::accel::Hit;
 use crate::lobes::{LobeTable, Scattered, Way};
 use crate::sampling::rng::{Purpose, Stream, unit};
@@ -20,6 +20,7 @@ impl Stage<'_> {
         (mut origin, mut direction): (Vec3, Vec3),
         stream: &Stream,
         direct: bool,
+        known: Option<&Known<'_>>,
     ) -> DVec3 {
         let (mut radiance, mut throughput) = (DVec3::ZERO, DVec3::ONE);
         // Whether lights were sampled at the last surface that turned the path.
@@ -40,15 +41,15 @@ impl Stage<'_> {
             let turned = [words[2], words[0], words[1], words[3]];
             let scattered = self.surfaces.scatter(lobes, (&hit, &point), direction, turned, (stream, bounce));
             origin = point.origin(scattered.side);
-            radiance += throughput
-                * self.direct_at(
-                    lobes,
-                    (&hit, point.facing(-direction)),
-                    direction,
-                    &scattered,
-                    (stream, bounce),
-                );
+            let end = Known::ends(known, bounce, hit.distance).filter(|_| scattered.way == Way::Even);
+            let numbers = (stream, bounce);
+            let surface = (&hit, point.facing(-direction));
+            radiance +=
+                throughput * self.direct_at(lobes, surface, direction, (&scattered, end.is_none()), numbers);
             throughput *= scattered.colour.as_dvec3();
+            if let Some(known) = end {
+                return radiance + throughput * (known.irradiance)(origin, scattered.side).as_dvec3() / PI;
+            }
             if throughput.max_element() <= 0.0 {
                 return radiance;
             }
@@ -70,13 +71,13 @@ impl Stage<'_> {
     }
 
     /// One sample of the radiance that a surface reflects of light straight from a light, without the sky: by what `scattered`
-    /// has chosen, and by its facets.
+    /// has chosen, and by its facets; even reflection, on wish, without that of the image of a sky.
     fn direct_at(
         &self,
         lobes: &LobeTable,
         (hit, side): (&Hit, Vec3),
         direction: Vec3,
-        scattered: &Scattered,
+        (scattered, with_image): (&Scattered, bool),
         (stream, step): (&Stream, u32),
     ) -> DVec3 {
         let point = self.surfaces.point(hit.triangle, hit.weights);
@@ -88,6 +89,7 @@ impl Stage<'_> {
         }
         let numbers = (stream, step);
         let even = match scattered.way {
+            Way::Even if light.from_sky && !with_image => 0.0,
             Way::Even => 1.0,
             Way::Facets { again: true } => {
                 self.surfaces.reflected_again(lobes, hit, (side, light.direction), numbers)
