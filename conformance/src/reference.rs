@@ -14,7 +14,7 @@ mod tests;
 use pmesh_format::{Header, IndexedMesh, Mode, PacketEntry, Wedges};
 use std::collections::BTreeMap;
 
-pub use coded::{Asked, payload_of};
+pub use coded::{Asked, LAST_STATES, payload_of};
 
 /// A rule that a packet breaks: its code in `spec/tables/errors.toml`, and the byte of the payload at which it is reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,7 +13,7 @@ use super::{Fault, Tables};
 use attributes::Wedged;
 use cells::Cells;
 use cut::{ordered, run};
-pub use symbols::{Asked, payload_of};
+pub use symbols::{Asked, LAST_STATES, payload_of};
 use symbols::{Binary, Sixteen, Symbols, residual};
 
 /// Codes of `spec/tables/errors.toml`; all are reported at byte 0 unless the text says otherwise.

@@ -299,7 +299,8 @@ impl Wedged {
     /// The values of a wedge of the base.
     fn first_values(&mut self, symbols: &mut Symbols<'_>, plan: &Plan) -> Result<(), Fault> {
         if plan.has.normals {
-            let code = [0; 2].map(|_: i64| symbols.raw(bits(2 * plan.most)) - plan.most);
+            let code =
+                [0; 2].map(|_: i64| symbols.about("normal of the base").raw(bits(2 * plan.most)) - plan.most);
             self.normals.push(plan.normal(code)?);
         }
         if plan.has.uvs {

@@ -189,9 +189,13 @@ impl<'a> Symbols<'a> {
     }
 }
 
-/// The payload that gives these answers, in two parts: states and words; raw bits, which end it (PMESH-COD-02).
-pub fn payload_of(asked: &[Asked]) -> [Vec<u8>; 2] {
-    let (mut x, mut y) = (1u64 << 16, 1u64 << 16);
+/// What both states are behind the last symbol (PMESH-COD-03).
+pub const LAST_STATES: [u64; 2] = [1 << 16; 2];
+
+/// The payload that gives these answers, in two parts: states and words; raw bits, which end it (PMESH-COD-02). `last`: the states
+/// behind the last symbol.
+pub fn payload_of(asked: &[Asked], last: [u64; 2]) -> [Vec<u8>; 2] {
+    let [mut x, mut y] = last;
     let mut words = Vec::new();
     for (c, f) in asked.iter().rev().filter_map(|asked| asked.range) {
         std::mem::swap(&mut x, &mut y);

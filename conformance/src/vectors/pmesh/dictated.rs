@@ -3,7 +3,7 @@
 
 use super::header;
 use super::refused::{payload, with_payload};
-use crate::reference::{Asked, Reference, payload_of};
+use crate::reference::{Asked, LAST_STATES, Reference, payload_of};
 use ivg_wire::{Code, Part};
 use pmesh_format::{Header, Limits, check};
 
@@ -34,7 +34,14 @@ pub(super) fn answered(file: &[u8], what: &str, answers: &[i64], goes_on: bool, 
 /// The file, another number in its directory, in which packet `k` ends where a reader refuses it.
 pub(super) fn cut_where_refused(file: &[u8], changed: &[u8], k: u32, code: Code) -> Vec<u8> {
     let answers = asked(file, &header(file), k).iter().map(|asked| asked.answer).collect();
-    let cut = dictated(changed, &header(changed), k, answers);
+    let header = header(changed);
+    let (asked, _) = before(changed, &header, k).asked(&payload(changed, k), Some(answers));
+    let [front, raw] = payload_of(&asked, LAST_STATES);
+    // As long as PMESH-COD-12 demands, and no longer, so that nothing more can be read.
+    let entry = &header.packets[k as usize];
+    let least = 8 + (entry.wedges.len() + entry.faces.len()) / 4 + entry.vertices.start as usize / 64;
+    let padding = vec![0; least.saturating_sub(front.len() + raw.len())];
+    let cut = with_payload(changed, k, &[front, padding, raw].concat());
     assert!(is_refused(&cut, code), "{}", code.number());
     cut
 }
@@ -48,7 +55,7 @@ pub(super) fn overlapping(file: &[u8], code: Code) -> Vec<u8> {
             for answer in 0..1 << known[at].bits.min(10) {
                 let mut asked = known.clone();
                 asked[at].answer = answer;
-                let [front, raw] = payload_of(&asked);
+                let [front, raw] = payload_of(&asked, LAST_STATES);
                 if front.last() != raw.first() {
                     continue;
                 }
@@ -75,11 +82,28 @@ fn before<'a>(file: &[u8], header: &'a Header, k: u32) -> Reference<'a> {
     reference
 }
 
+/// The file whose packet `k` has these states behind the last symbol, or these bytes between words and raw bits, or these unused bits
+/// of raw bits.
+pub(super) fn ended(
+    file: &[u8],
+    k: u32,
+    states: [u64; 2],
+    between: &[u8],
+    unused: u8,
+    code: Code,
+) -> Vec<u8> {
+    let [front, mut raw] = payload_of(&asked(file, &header(file), k), states);
+    raw[0] |= unused;
+    let changed = with_payload(file, k, &[&front[..], between, &raw].concat());
+    assert!(is_refused(&changed, code), "{}", code.number());
+    changed
+}
+
 /// The file with the packet that gives these answers, no shorter than it was.
 fn dictated(file: &[u8], header: &Header, k: u32, answers: Vec<i64>) -> Vec<u8> {
     let old = payload(file, k);
     let (asked, _) = before(file, header, k).asked(&old, Some(answers));
-    let [front, raw] = payload_of(&asked);
+    let [front, raw] = payload_of(&asked, LAST_STATES);
     let padding = vec![0; old.len().saturating_sub(front.len() + raw.len())];
     with_payload(file, k, &[front, padding, raw].concat())
 }

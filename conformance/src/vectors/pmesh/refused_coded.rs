@@ -3,9 +3,10 @@
 
 use super::super::Refused;
 use super::super::edit::in_envelope;
-use super::dictated::{MOST, answered, cut_where_refused, overlapping};
+use super::dictated::{MOST, answered, cut_where_refused, ended, overlapping};
 use super::refused::{in_directory, payload, with_payload};
 use super::{RECORD_HEAD, entry, header, packet};
+use crate::reference::LAST_STATES;
 use ivg_wire::{Code, Part};
 use pmesh_format::{Limits, check, codes as mesh};
 
@@ -165,6 +166,50 @@ fn answers<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             "texture coordinates outside their lattice",
         ),
         other(ATTRIBUTES, "colour", &far, "coded-colour", mesh::ATTRIBUTE, "a colour outside 0 to 255"),
+        other(
+            NORMALS,
+            "normal of the base",
+            &[MOST],
+            "coded-base-normal",
+            mesh::ATTRIBUTE,
+            "a normal of the base outside its square",
+        ),
+        other(
+            WEDGES,
+            "wedge of a slot",
+            &[0, MOST],
+            "coded-switch-place",
+            mesh::SWITCH,
+            "a corner switches to a fourth wedge of three",
+        ),
+        (
+            CLOSED,
+            "coded-state-first",
+            mesh::CODED_LENGTH,
+            ended(closed, 0, [LAST_STATES[0] + 1, LAST_STATES[1]], &[], 0, mesh::CODED_LENGTH),
+            "the first state is not what it is behind the last symbol",
+        ),
+        (
+            CLOSED,
+            "coded-state-second",
+            mesh::CODED_LENGTH,
+            ended(closed, 0, [LAST_STATES[0], LAST_STATES[1] + 1], &[], 0, mesh::CODED_LENGTH),
+            "the second state is not what it is behind the last symbol",
+        ),
+        (
+            CLOSED,
+            "coded-between",
+            mesh::CODED_LENGTH,
+            ended(closed, 0, LAST_STATES, &[0], 0, mesh::CODED_LENGTH),
+            "a byte between words and raw bits of a packet that is long enough",
+        ),
+        (
+            CLOSED,
+            "coded-raw-unused",
+            mesh::CODED_PADDING,
+            ended(closed, 0, LAST_STATES, &[], 0x80, mesh::CODED_PADDING),
+            "an unused bit of the raw bits is set",
+        ),
         (
             EXACT,
             "coded-overlap",

@@ -304,8 +304,8 @@ fn colour_by_face() -> ProgressiveMesh {
         colours: corners.iter().map(|c| [80 * c.1, 200 - 40 * c.1, c.1, 255]).collect(),
         ..Wedges::default()
     };
-    // Wedges of vertex 3, of faces 1 to 3: those faces vanish, or, face 2, go on with the wedge of face 1.
-    mesh.wedge_collapse = vec![wedge(0, 1), wedge(0, 1), wedge(0, 3)];
+    // Wedges of vertex 3, of faces 1 to 3: all become one, with which face 2 goes on where the others vanish.
+    mesh.wedge_collapse = vec![wedge(0, 1); 3];
     mesh
 }
 
