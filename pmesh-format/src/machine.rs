@@ -1,7 +1,7 @@
 //! What some processors have instructions of their own for, and how it is done on others.
 
 /// Sixteen numbers that are worked on together.
-pub(crate) type Lanes = [i16; 16];
+pub(crate) type Lanes = [[i16; 8]; 2];
 
 #[cfg(target_arch = "x86_64")]
 mod imp {
@@ -13,15 +13,9 @@ mod imp {
     use super::Lanes;
 
     #[inline(always)]
-    fn halves(lanes: &Lanes) -> [m128i; 2] {
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = *lanes;
-        [m128i::from([a, b, c, d, e, f, g, h]), m128i::from([i, j, k, l, m, n, o, p])]
-    }
-
-    #[inline(always)]
     pub(crate) fn not_above(ascending: &Lanes, most: i16) -> usize {
         let most = set_splat_i16_m128i(most);
-        let [low, high] = halves(ascending).map(|half| cmp_gt_mask_i16_m128i(half, most));
+        let [low, high] = ascending.map(|half| cmp_gt_mask_i16_m128i(half.into(), most));
         let above = move_mask_i8_m128i(pack_i16_to_i8_m128i(low, high)) as u32;
         (above | 1 << 16).trailing_zeros() as usize
     }
@@ -29,13 +23,11 @@ mod imp {
     #[inline(always)]
     pub(crate) fn approach(lanes: &mut Lanes, targets: &Lanes, shift: u32) {
         let count = set_i64_m128i_s(shift.into());
-        let [low, high] = halves(lanes);
-        let [low_target, high_target] = halves(targets);
-        let nearer =
-            |lanes, targets| add_i16_m128i(lanes, shr_all_i16_m128i(sub_i16_m128i(targets, lanes), count));
-        let [a, b, c, d, e, f, g, h]: [i16; 8] = nearer(low, low_target).into();
-        let [i, j, k, l, m, n, o, p]: [i16; 8] = nearer(high, high_target).into();
-        *lanes = [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p];
+        let nearer = |half: [i16; 8], targets: [i16; 8]| {
+            let half = m128i::from(half);
+            add_i16_m128i(half, shr_all_i16_m128i(sub_i16_m128i(targets.into(), half), count)).into()
+        };
+        *lanes = [nearer(lanes[0], targets[0]), nearer(lanes[1], targets[1])];
     }
 
     #[inline(always)]
@@ -64,12 +56,12 @@ mod portable {
 
     #[inline(always)]
     pub(crate) fn not_above(ascending: &Lanes, most: i16) -> usize {
-        usize::from(ascending.iter().map(|&x| u16::from(x <= most)).sum::<u16>())
+        usize::from(ascending.as_flattened().iter().map(|&x| u16::from(x <= most)).sum::<u16>())
     }
 
     #[inline(always)]
     pub(crate) fn approach(lanes: &mut Lanes, targets: &Lanes, shift: u32) {
-        for (x, target) in lanes.iter_mut().zip(targets) {
+        for (x, target) in lanes.as_flattened_mut().iter_mut().zip(targets.as_flattened()) {
             *x = x.wrapping_add(target.wrapping_sub(*x) >> shift);
         }
     }

@@ -3,7 +3,10 @@
 use std::alloc::System;
 
 use ivg_wire::{CommonHeader, ContentId, FormatId, Step, seal_header};
-use pmesh_format::{Decoder, EncodeOptions, Limits, ProgressiveMesh, Replay, Verdict, Wedges, check, encode};
+use pmesh_format::{
+    Decoder, EncodeOptions, IndexedMesh, Limits, Mode, Positions, ProgressiveMesh, Replay, Verdict, Wedges,
+    check, encode,
+};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 #[global_allocator]
@@ -12,6 +15,10 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 /// PMESH-LIM-03 and COM-LIM-03 without the constant: what the directory, the decoder and the replay may hold for each byte
 /// received.
 const BYTES_PER_BYTE: usize = 64;
+/// The same of coded packets.
+const BYTES_PER_CODED_BYTE: usize = 2_048;
+/// What the replay of a whole coded file may hold at most, as a multiple of the mesh: the mesh, and 1.5 times as much beside it.
+const OF_THE_MESH: f64 = 2.5;
 /// The constant of PMESH-LIM-03.
 const FIXED: usize = 65_536;
 
@@ -44,6 +51,48 @@ fn deep(vertices: u32) -> ProgressiveMesh {
         faces: vec![[vertices - 3, vertices - 2, vertices - 1]; 4 * vertices as usize],
         ..strip(vertices, false)
     }
+}
+
+/// A strip whose wedges have all there is.
+fn with_attributes(vertices: u32) -> ProgressiveMesh {
+    let mut mesh = strip(vertices, true);
+    let wedges = mesh.wedges.len();
+    mesh.wedges.normals = (0..wedges).map(|w| [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]][w % 2]).collect();
+    mesh.wedges.uvs = (0..wedges).map(|w| [w as f32 / wedges as f32, (w % 2) as f32]).collect();
+    mesh.materials = (0..mesh.faces.len()).map(|face| (face % 3) as u16).collect();
+    mesh
+}
+
+/// Bytes of the arrays of a mesh.
+fn size(mesh: &IndexedMesh) -> usize {
+    let wedges = &mesh.wedges;
+    12 * (mesh.positions.len() + wedges.normals.len() + mesh.triangles.len())
+        + 8 * wedges.uvs.len()
+        + 4 * wedges.colours.len()
+        + 2 * mesh.materials.len()
+}
+
+/// What is held of coded packets, one by one, and in the end.
+fn coded_packets_hold_little(mesh: &ProgressiveMesh, positions: Positions, packet: u32) {
+    let mesh = ProgressiveMesh { positions: positions.quantised(&mesh.positions), ..mesh.clone() };
+    let options = EncodeOptions { mode: Mode::Coded, positions, ..EncodeOptions::fixed(packet) };
+    let file = encode(&mesh, &options).unwrap();
+    let region = Region::new(ALLOCATOR);
+    let mut decoder = Decoder::new(Limits::default());
+    let mut replay = Replay::default();
+    let mut at = 0;
+    while let Step::Consumed(used, event) = decoder.push(&file[at..]).unwrap() {
+        at += used;
+        replay.accept(&event).unwrap();
+        let (held, bound) = (held(&region), FIXED + BYTES_PER_CODED_BYTE * at);
+        assert!(held <= bound, "{held} bytes held after {at}, packets of {packet}");
+    }
+    assert_eq!(at, file.len());
+    let (held, mesh) = (held(&region), size(&replay.mesh()));
+    assert!(
+        held as f64 <= OF_THE_MESH * mesh as f64,
+        "{held} bytes held of a mesh of {mesh}, packets of {packet}"
+    );
 }
 
 /// A header of 152 bytes that declares the most that the format holds, then a few bytes of a directory.
@@ -154,5 +203,11 @@ fn memory_is_bounded_by_what_has_arrived() {
         assert!(Replay::from_file(beginning, &Limits::default()).is_err());
         let allocated = region.change().bytes_allocated;
         assert!(allocated <= FIXED + 2 * BYTES_PER_BYTE * beginning.len(), "{allocated} bytes allocated");
+    }
+    for packet in [5_000, 100] {
+        for positions in [Positions::F32, Positions::Quantised(12)] {
+            coded_packets_hold_little(&strip(20_000, false), positions, packet);
+            coded_packets_hold_little(&with_attributes(20_000), positions, packet);
+        }
     }
 }

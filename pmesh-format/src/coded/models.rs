@@ -99,14 +99,14 @@ pub(super) struct Symbols {
 /// What the starts tend to when a symbol comes again and again.
 #[expect(clippy::indexing_slicing, reason = "a constant")]
 const TARGETS: [Lanes; 16] = {
-    let mut targets = [[0; 16]; 16];
+    let mut targets = [[[0; 8]; 2]; 16];
     let mut symbol = 0;
     while symbol < 16 {
         let mut i = 0;
         while i < 16 {
             let above = i > symbol;
             let small = SYMBOL_LEAST * i as i16;
-            targets[symbol][i] =
+            targets[symbol][i / 8][i % 8] =
                 if above { (ONE as i32 - SYMBOL_LEAST as i32 * (16 - i as i32)) as i16 } else { small };
             i += 1;
         }
@@ -118,14 +118,15 @@ const TARGETS: [Lanes; 16] = {
 impl Symbols {
     /// With these starts before anything is known.
     pub(super) const fn new(starts: [i16; 16]) -> Self {
-        Self { starts, seen: 0 }
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = starts;
+        Self { starts: [[a, b, c, d, e, f, g, h], [i, j, k, l, m, n, o, p]], seen: 0 }
     }
 
     /// Start and width of the range of a symbol.
     #[inline(always)]
     pub(super) fn range(&self, symbol: usize) -> (u32, u32) {
         let [start, end] = [symbol & 15, symbol.wrapping_add(1) & 15]
-            .map(|k| self.starts.get(k).copied().unwrap_or(0) as u32);
+            .map(|k| self.starts.as_flattened().get(k).copied().unwrap_or(0) as u32);
         // Behind the last one 0 begins again.
         (start, end.wrapping_sub(start) & (ONE - 1))
     }

@@ -92,7 +92,7 @@ impl State {
     #[inline(always)]
     fn beside(&self, vertex: u32, slot: u32) -> [u32; 2] {
         // Its corners are different, so that there is no need to ask which of them the slot is.
-        let [a, b, c] = self.corners[slot as usize / 3];
+        let [a, b, c] = self.corners.get(slot as usize / 3).copied().unwrap_or_default();
         if a == vertex {
             [b, c]
         } else if b == vertex {
@@ -111,11 +111,10 @@ impl State {
         changes: &mut Changes,
         count: usize,
     ) -> Result<(), Fault> {
-        let list = self.slots.of(step.parent);
-        // What is left over are copies of the first slot, whose face nothing follows.
+        // What is left over is of no face; nothing follows it.
         let (mut outs, mut backs) = ([u32::MAX; FEW], [0; FEW]);
-        for k in 0..FEW {
-            let [out, back] = self.beside(step.parent, list[if k < list.len() { k } else { 0 }]);
+        for (k, &slot) in self.slots.few(step.parent).iter().enumerate() {
+            let [out, back] = self.beside(step.parent, slot);
             outs[k] = if k < count { out } else { u32::MAX };
             backs[k] = back;
         }
