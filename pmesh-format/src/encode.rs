@@ -29,11 +29,13 @@ use writer::{Quantised, Writer, uv_bounds};
 pub enum PacketSize {
     /// The same number in every packet.
     Fixed(u32),
-    /// A share of the vertices that came before, so that every packet refines the picture by as much as the one before.
+    /// A share of the vertices that came before, so that every packet refines the picture by as much as the one before. If the
+    /// first hundredth of the vertices is at least four times the first packet, a packet ends with it, and up to there each
+    /// brings as many as all before: small packets cost more bytes than what they show is worth.
     Growing {
-        /// Vertices of the first packet.
+        /// Vertices of the first packet, at least.
         first: u32,
-        /// Growth by each packet \[%\].
+        /// Growth by each packet from the first hundredth on \[%\].
         percent: u32,
         /// The most vertices of one packet.
         most: u32,
@@ -56,8 +58,8 @@ pub struct EncodeOptions {
 }
 
 impl EncodeOptions {
-    /// The defaults: raw packets of 256 vertices, then 30 % more with each packet, but at most 262,144 at once; positions as
-    /// given; 10 bits for coded normals, 12 for coded texture coordinates.
+    /// The defaults: raw packets of at least 256 vertices, then 30 % more with each packet, but at most 262,144 at once;
+    /// positions as given; 10 bits for coded normals, 12 for coded texture coordinates.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -139,8 +141,16 @@ impl Default for EncodeOptions {
 impl PacketSize {
     /// The vertex count after the packet that begins at vertex `start`.
     fn end(self, start: u32, base: u32, vertices: u32) -> u32 {
+        let hundredth = vertices.div_ceil(100);
         let size = match self {
             Self::Fixed(size) => size,
+            Self::Growing { first, most, .. } if start < hundredth && hundredth / 4 >= first => {
+                let mut end = hundredth;
+                while end > 1 && end.div_ceil(2) >= first && end.div_ceil(2) > start {
+                    end = end.div_ceil(2);
+                }
+                (end - start).min(most)
+            }
             Self::Growing { first, most, .. } if start == 0 => first.min(most),
             Self::Growing { percent, most, .. } => {
                 let share = u64::from(start) * u64::from(percent) / 100;

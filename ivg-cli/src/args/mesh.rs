@@ -31,7 +31,7 @@ pub(crate) struct MeshArguments {
     /// Vertices a packet, the same in each.
     #[arg(long, value_name = "N", value_parser = crate::scene_args::count::<u32>, conflicts_with = "growth")]
     pub(crate) packet: Option<u32>,
-    /// Vertices a packet as a share of those before it, in percent [default: 30].
+    /// Vertices a packet as a share of those before it, in percent, from the first hundredth of all on [default: 30].
     #[arg(long, value_name = "PERCENT", value_parser = crate::scene_args::count::<u32>)]
     pub(crate) growth: Option<u32>,
     /// Print figures as JSON.

@@ -53,6 +53,25 @@ fn packets_grow_as_asked() {
 }
 
 #[test]
+fn a_packet_ends_with_the_first_hundredth() {
+    let ends = |vertices: u32, packets: PacketSize| -> Vec<u32> {
+        let mut ends = vec![packets.end(0, 3, vertices)];
+        while ends[ends.len() - 1] < vertices {
+            ends.push(packets.end(ends[ends.len() - 1], 3, vertices));
+        }
+        ends
+    };
+    let growing = |first, most| PacketSize::Growing { first, percent: 300, most };
+    // Halves of 250, rounded up, that are no less than the first packet; from there on 300 % more each time.
+    assert_eq!(ends(25_000, growing(32, 1 << 18)), [32, 63, 125, 250, 1000, 4000, 16_000, 25_000]);
+    assert_eq!(ends(25_000, growing(33, 1 << 18)), [63, 125, 250, 1000, 4000, 16_000, 25_000]);
+    assert_eq!(ends(25_000, growing(62, 1 << 18))[..3], [63, 125, 250]);
+    assert_eq!(ends(25_000, growing(63, 1 << 18))[..2], [63, 252]);
+    assert_eq!(ends(25_000, growing(32, 100))[..5], [32, 63, 125, 225, 250]);
+    assert_eq!(ends(25_000, growing(0, 1 << 18))[..4], [3, 4, 8, 16]);
+}
+
+#[test]
 fn materials_that_are_all_zero_are_not_stored() {
     let mut mesh = random_mesh(4, Kind { vertices: 12, seams: false, materials: true });
     mesh.materials.fill(0);
