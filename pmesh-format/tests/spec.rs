@@ -165,3 +165,22 @@ fn the_printed_example_is_a_file() {
     replay.set_level(3).unwrap();
     assert_eq!(replay.indices(), [[1, 2, 0]]);
 }
+
+#[test]
+fn the_printed_coded_packet_is_that_of_the_vector() {
+    let text = read("pmesh.md");
+    let (_, after) = text.split_once("<!-- coded example -->\n```\n").expect("the example's mark");
+    let (block, _) = after.split_once("```\n<!-- end -->").expect("the example's end");
+    let printed: Vec<u8> =
+        block.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect();
+    let file = include_bytes!("../../conformance/vectors/pmesh/0057-coded-wedges.pmesh");
+    let mut replay = Replay::default();
+    pmesh_format::decode_all(file, &Limits::default(), |event| {
+        if let pmesh_format::Event::Packet(packet) = &event {
+            assert_eq!(packet.payload(), printed);
+        }
+        replay.accept(&event).unwrap();
+    })
+    .unwrap();
+    assert_eq!(replay.indices(), [[0, 6, 3], [5, 7, 10], [1, 4, 9], [2, 11, 8]]);
+}

@@ -58,7 +58,7 @@ impl Cells {
             let units = low[axis] + cell[axis];
             let (first, next) = (place(units), place(units + 1));
             let most = (next - 1 - first).max(0);
-            let chosen = symbols.raw(bits(most));
+            let chosen = symbols.about("place in a cell").raw(bits(most));
             let rank = first + chosen.min(most);
             let number =
                 if rank < 0 { -f32::from_bits((-1 - rank) as u32) } else { f32::from_bits(rank as u32) };

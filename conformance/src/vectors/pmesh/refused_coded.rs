@@ -36,6 +36,9 @@ fn answers<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
     let far = [0, 15, 20, MOST, MOST];
     let (closed, attributes) = (twin(CLOSED), twin(ATTRIBUTES));
     let faces = header(closed).packets[1].faces.end;
+    // PMESH-COD-12: of a packet with nothing before it.
+    let first = &header(closed).packets[0];
+    let least = 8 + (first.wedges.end + first.faces.end) / 4;
     // A packet behind which there is one with a wedge to spare.
     let spare =
         header(attributes).packets.windows(2).position(|two| two[1].wedges.len() > two[1].vertices.len());
@@ -209,6 +212,21 @@ fn answers<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             mesh::CODED_PADDING,
             ended(closed, 0, LAST_STATES, &[], 0x80, mesh::CODED_PADDING),
             "an unused bit of the raw bits is set",
+        ),
+        other(
+            EXACT,
+            "place in a cell",
+            &[MOST],
+            "coded-base-place",
+            mesh::POSITION,
+            "a number that a cell of the base does not have",
+        ),
+        (
+            CLOSED,
+            "coded-bytes-least",
+            mesh::DIRECTORY_BYTES,
+            in_directory(closed, 0, entry::PAYLOAD_BYTES, least - 1),
+            "a packet a byte shorter than its vertices and faces demand",
         ),
         (
             EXACT,
