@@ -204,7 +204,7 @@ pub fn payload_of(asked: &[Asked], last: [u64; 2]) -> [Vec<u8>; 2] {
             words.push(x as u16);
             x >>= 16;
         }
-        x = (x / f << 15) + x % f + c;
+        x = ((x / f) << 15) + x % f + c;
     }
     let mut front = [x as u32, y as u32].map(u32::to_le_bytes).concat();
     front.extend(words.iter().rev().flat_map(|word| word.to_le_bytes()));
