@@ -9,6 +9,7 @@ use crate::{BuildError, BuildOptions, BuildReport, Cost, build};
 
 mod attributes;
 mod cases;
+mod comb;
 mod seams;
 mod shapes;
 
