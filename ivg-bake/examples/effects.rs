@@ -2,7 +2,7 @@
 //! needs and with all there are.
 //!
 //! ```text
-//! cargo run --release -p ivg-bake --example effects -- [SCENE [LIGHTS]] [PHOTONS]
+//! cargo run --release -p ivg-bake --features cases --example effects -- [SCENE [LIGHTS]] [PHOTONS]
 //! ```
 //!
 //! Without a scene: a box with a lit ceiling, as it is; and with a mirror for a block, a ball of glass on it, and a sky. Times are
@@ -16,6 +16,7 @@ use std::time::Instant;
 
 use common::AnyError;
 use glam::Vec3;
+use ivg_bake::cases::difference;
 use ivg_bake::{BakeOptions, BakeResult, Silent, bake, pilot};
 use ivg_scene::plan::{PlanOptions, analyse};
 use ivg_scene::{EffectPlan, FlatScene, Material, Mesh, Need, Node, Scene};
@@ -64,7 +65,7 @@ fn measure(scene: &Scene, photons: u64) -> Result<(), AnyError> {
         "{:<16} {needed_time:>8.2} {all_time:>8.2} {:>6.1} % {:>8.3} %",
         scene.name,
         100.0 * (1.0 - needed_time / all_time),
-        100.0 * difference(&results[0], &results[1]),
+        100.0 * difference(&results[0].grid, &results[1].grid),
     );
     let names = |need: Need| -> Vec<&str> {
         needed.effects.iter().filter(|e| e.need == need).map(|e| e.effect.name()).collect()
@@ -92,18 +93,6 @@ fn timed(
 fn median(mut times: Vec<f64>) -> f64 {
     times.sort_by(f64::total_cmp);
     times[times.len() / 2]
-}
-
-fn difference(a: &BakeResult, b: &BakeResult) -> f64 {
-    let (mut difference, mut square) = (0.0, 0.0);
-    for (a, b) in a.grid.vectors().iter().zip(b.grid.vectors()) {
-        for n in 0..18 {
-            let [a, b] = [a, b].map(|v| f64::from(v[n / 3][n % 3][n / 6]));
-            difference += (a - b) * (a - b);
-            square += b * b;
-        }
-    }
-    (difference / square).sqrt()
 }
 
 /// The box with a rough metal wall, a solid of glass that floats in it, and a sky that shines in through a pane in place of a wall.

@@ -6,6 +6,7 @@
 use core::f64::consts::PI;
 
 use glam::{DAffine3, DVec3, Vec3};
+use ivg_grid::IrradianceGrid;
 use ivg_scene::{
     Effect, EffectPlan, FlatScene, Light, LightKind, Material, Mesh, Need, Node, PlannedEffect, Scene,
     SkyImage,
@@ -41,6 +42,25 @@ const SEEDS: u64 = 8;
 
 /// Reflections followed where nothing but absorption should end a photon.
 const UNLIMITED: u32 = 100_000;
+
+/// Root mean square of the difference of the components along the axes of two grids of vectors, relative to that of the
+/// second's.
+///
+/// # Panics
+///
+/// If a grid holds radiance harmonics.
+#[must_use]
+pub fn difference(a: &IrradianceGrid, b: &IrradianceGrid) -> f64 {
+    let (mut difference, mut square) = (0.0, 0.0);
+    for (a, b) in a.vectors().iter().zip(b.vectors()) {
+        for n in 0..18 {
+            let [a, b] = [a, b].map(|v| f64::from(v[n / 3][n % 3][n / 6]));
+            difference += (a - b) * (a - b);
+            square += b * b;
+        }
+    }
+    (difference / square).sqrt()
+}
 
 /// A scene of one mesh under construction.
 #[derive(Debug, Default)]

@@ -18,6 +18,10 @@ use crate::stage::{Effects, Stage};
 use crate::workers::{Workers, map};
 use crate::{BakeError, Monitor};
 
+mod brightness;
+
+pub use brightness::Brightness;
+
 /// A path tracer over a scene.
 #[derive(Debug)]
 pub struct Oracle<'a> {
