@@ -18,7 +18,7 @@ use crate::storage::Positions;
 const BATCH: usize = 64;
 
 /// How many splits ahead what they need of vertices is fetched; of faces twice as many.
-const AHEAD: usize = 6;
+const AHEAD: usize = 3;
 
 /// Vertices of which not all that is known fits into the caches next to a core: some 70 bytes each.
 const MANY: usize = 1 << 15;
