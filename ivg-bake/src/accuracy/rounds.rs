@@ -33,7 +33,7 @@ const GROWTH: (f64, f64) = (1.25, 4.0);
 const MARGIN: f64 = 1.05;
 
 /// Vertices that the bias is measured at first, and at most.
-const PROBES: (usize, usize) = (100, 800);
+const PROBES: (usize, usize) = (96, 768);
 
 /// Noise at which bias is first looked at, relative to the error asked for.
 const NOISE_BEFORE_PROBES: f64 = 2.0;
@@ -300,27 +300,12 @@ where
         });
         self.probes = probes;
         let Some(vertices) = worst else { return Ok(false) };
-        let allowed = GATHERED_NOISE * self.asked.powi(2) * look.signal;
-        let wanted = self.shared_out(allowed, &vertices);
+        let variance = GATHERED_NOISE * self.asked.powi(2) * look.signal / vertices.len().max(1) as f64;
+        let enough = Enough::Variance { variance, most: MOST_PATHS };
+        let wanted: Vec<_> = vertices.into_iter().map(|vertex| (vertex, enough)).collect();
         let done = self.gather(&wanted)?;
         self.biased += done;
         Ok(done == wanted.len())
-    }
-
-    /// How well vertices are to be gathered so that their variances add up to `allowed`, with as few paths as that takes: in
-    /// proportion to the standard deviation of a path (J. Neyman, "On the two different aspects of the representative
-    /// method", 1934), and so about to how bright they are.
-    fn shared_out(&self, allowed: f64, vertices: &[usize]) -> Vec<(usize, Enough)> {
-        let axes = self.axes_of();
-        let bright: Vec<f64> = vertices.iter().map(|&vertex| energy(&axes(vertex)).sqrt()).collect();
-        let mean = bright.iter().sum::<f64>() / bright.len().max(1) as f64;
-        // Where averaging over a cell finds little light the vertex itself may be bright.
-        let share = |bright: f64| (bright + mean) / (2.0 * mean * vertices.len() as f64);
-        let enough = |bright| {
-            let variance = if mean > 0.0 { allowed * share(bright) } else { 0.0 };
-            Enough::Variance { variance, most: MOST_PATHS }
-        };
-        vertices.iter().copied().zip(bright.iter().map(|&bright| enough(bright))).collect()
     }
 
     /// Gathers light at vertices into the grid until there are no more of them or the monitor has enough; says how many.
