@@ -40,7 +40,8 @@ class Direction(TypedDict):
 
 
 def distances(original: Path, samples: int, surfaces: list[Path]) -> list[Distance]:
-    """Mean of the two one-sided means, maximum of the two maxima, with so many random points of the faces each way."""
+    """Mean of the two one-sided means, with so many random points of the faces each way, and maximum of the two maxima, of these
+    points, the vertices, and random points of the edges, as many as the original has vertices at least."""
     return _called("distances", original, str(samples), *surfaces)
 
 
@@ -83,24 +84,29 @@ def _measure_distances(original: str, samples: str, surfaces: list[str]) -> list
 
     meshes = _loaded(original)
     diagonal = meshes.current_mesh().bounding_box().diagonal()
+    vertices = meshes.current_mesh().vertex_number()
     half = pymeshlab.PercentageValue(50)
     found: list[Distance] = []
     for surface in surfaces:
         meshes.load_new_mesh(surface)
         other = meshes.current_mesh_id()
-        ways = [
-            meshes.get_hausdorff_distance(
-                sampledmesh=sampled,
-                targetmesh=target,
-                samplevert=False,
-                sampleedge=False,
-                sampleface=True,
-                samplenum=int(samples),
-                maxdist=half,
-            )
-            for sampled, target in ((0, other), (other, 0))
-        ]
-        mean, greatest = sum(way["mean"] for way in ways) / 2, max(way["max"] for way in ways)
+        # Means over the faces; what sticks out is small, so maxima count its vertices and edges too.
+        faces, edges = (
+            [
+                meshes.get_hausdorff_distance(
+                    sampledmesh=sampled,
+                    targetmesh=target,
+                    samplevert=not of_faces,
+                    sampleedge=not of_faces,
+                    sampleface=of_faces,
+                    samplenum=int(samples) if of_faces else max(int(samples), vertices),
+                    maxdist=half,
+                )
+                for sampled, target in ((0, other), (other, 0))
+            ]
+            for of_faces in (True, False)
+        )
+        mean, greatest = sum(way["mean"] for way in faces) / 2, max(way["max"] for way in faces + edges)
         meshes.set_current_mesh(other)
         mesh = meshes.current_mesh()
         corners = mesh.vertex_matrix()[mesh.face_matrix()]
