@@ -132,7 +132,7 @@ impl Accumulator {
     pub fn to_bytes(&self) -> Vec<u8> {
         let head = self.head.to_bytes();
         let (lights, books) = (light_bytes(&self.lights), book_bytes(&self.books));
-        let vertices: Vec<u8> = self.vertices.iter().flat_map(Vertex::to_bytes).collect();
+        let vertices: Vec<u8> = self.vertices.iter().flat_map(|vertex| vertex.to_bytes()).collect();
         let content = ContentId::of(&[&head, &lights, &books, &vertices]);
         // Sums differ whenever photons do, and those are in the header.
         let header_bytes = FORMAT.header_bytes;
@@ -396,8 +396,8 @@ fn read_books(bytes: &[u8]) -> Result<Books, AccumulatorError> {
 const NEIGHBOUR_BITS: u32 = 26;
 
 impl Vertex {
-    fn to_bytes(&self) -> [u8; VERTEX_BYTES as usize] {
-        let Self { place: Place { cells, moments, aside, open }, validity, blocked_edges } = *self;
+    fn to_bytes(self) -> [u8; VERTEX_BYTES as usize] {
+        let Self { place: Place { cells, moments, aside, open }, validity, blocked_edges } = self;
         let aside = (0..3).fold(0, |bits, a| bits | ((aside[a] + 1) as u32) << (2 * a));
         let mut out = [0; VERTEX_BYTES as usize];
         out[..2].copy_from_slice(&cells.to_le_bytes());
