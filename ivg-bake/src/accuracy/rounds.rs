@@ -102,6 +102,8 @@ struct Look {
     signal: f64,
     noise: f64,
     noise_bound: f64,
+    /// Of the noise, that of vertices that hold gathered light.
+    gathered: f64,
     bias: f64,
     bias_bound: f64,
 }
@@ -142,8 +144,10 @@ where
                 look = self.look_again()?;
             }
             let allowed = self.asked.powi(2) * look.signal;
-            while self.probes.is_some() && look.bias_bound > MOST_BIAS * allowed && !last {
-                let uncertain = look.bias < 0.5 * MOST_BIAS * allowed;
+            // What the noise of gathered vertices leaves: no photon makes that smaller.
+            let bearable = |look: &Look| MOST_BIAS * (allowed - look.gathered).max(0.0);
+            while self.probes.is_some() && look.bias_bound > bearable(&look) && !last {
+                let uncertain = look.bias < 0.5 * bearable(&look);
                 if uncertain && self.probes.as_ref().is_some_and(|p| p.can_grow() && p.len() < PROBES.1) {
                     let more = self.probes.as_ref().map_or(0, Probes::len);
                     self.probe(more, &look)?;
@@ -252,6 +256,7 @@ where
             signal,
             noise,
             noise_bound,
+            gathered: of_gathered,
             bias: bias.map_or(0.0, |bias| bias.squared.max(0.0)),
             bias_bound: bias.map_or(0.0, |bias| bias.bound(0.5 * beyond(self.looks))),
         })
