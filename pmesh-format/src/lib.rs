@@ -38,9 +38,9 @@
 //! ```
 //!
 //! Guarantees: reading never panics, whatever the bytes; [`Decoder`] allocates nothing but the directory; [`Replay`] holds at
-//! most 64 bytes for each byte received (PMESH-LIM-03), about 1.6 of an ordinary mesh that has been stepped through; a declared
-//! count never makes anything allocate; any split of the bytes gives the same events and the same error; a packet that breaks a
-//! rule leaves the levels before it as they were. [`Replay::from_file`] reads a whole file at once.
+//! most 64 KiB and 64 bytes for each byte received, 2,048 in coded mode (PMESH-LIM-03), and about 1.6 for an ordinary raw file that
+//! has been stepped through; a declared count never makes anything allocate; any split of the bytes gives the same events and the
+//! same error; a packet that breaks a rule leaves the levels before it as they were. [`Replay::from_file`] reads a whole file at once.
 //! [`decode_packet`] reads one packet by its range, [`Header::packet_range`] says where it lies.
 //!
 //! Features: `std` (default) is only passed on to dependencies; it never changes bytes or results.
