@@ -1,6 +1,7 @@
 //! Whether surfaces that a client lights from a grid are as bright as they should be.
 
 use glam::{DVec3, Vec3};
+use ivg_format::Lattice;
 use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction, SURFACE_BIAS, SpatialFilter, fill};
 
 use super::{Oracle, Sampling};
@@ -23,13 +24,60 @@ pub struct Brightness {
     pub ratio: f64,
 }
 
+/// A place on one side of a surface, lit from a grid and by path tracing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LitPlace {
+    /// Where it is, a little off the surface \[m\].
+    pub point: DVec3,
+    /// Unit normal of that side.
+    pub normal: Vec3,
+    /// Indirect irradiance that the grid gives it, all channels together \[W/m²\].
+    pub baked: f64,
+    /// The path-traced one \[W/m²\].
+    pub traced: f64,
+    /// Standard error of `traced` \[W/m²\].
+    pub error: f64,
+    /// Whether a vertex of the grid that light reaches sees it: one that is valid, in front of the surface, one of the
+    /// 4 × 4 × 4 around the place, and with nothing in between.
+    pub seen: bool,
+}
+
+/// What [`Oracle::brightness`] makes of places, of those that are [seen](LitPlace::seen): all together, then those in each of `boxes`³ equal boxes of the lattice's
+/// bounds that has any.
+#[must_use]
+pub fn brightness_of(places: &[LitPlace], lattice: &Lattice, boxes: u16) -> Vec<Brightness> {
+    let [nx, ny, nz] = lattice.dims.map(|n| n - 1);
+    let (low, high) = (DVec3::from(lattice.origin), DVec3::from(lattice.position(nx, ny, nz)));
+    let step = (high - low) / f64::from(boxes.max(1));
+    let count = usize::from(boxes.max(1));
+    let mut sums = vec![Sums::default(); count * count * count];
+    for place in places.iter().filter(|place| place.seen) {
+        let at = ((place.point - low) / step).to_array().map(|x| (x.max(0.0) as usize).min(count - 1));
+        sums[at[0] + count * (at[1] + count * at[2])].add(&Sums {
+            places: 1,
+            baked: place.baked,
+            traced: place.traced,
+            variance: place.error * place.error,
+        });
+    }
+    let mut all = Sums::default();
+    sums.iter().for_each(|sum| all.add(sum));
+    let parts = sums.iter().enumerate().filter(|(_, sum)| sum.places > 0).map(|(n, sum)| {
+        let corner = DVec3::new((n % count) as f64, (n / count % count) as f64, (n / count / count) as f64);
+        sum.brightness(low + step * corner, low + step * (corner + 1.0))
+    });
+    core::iter::once(all.brightness(low, high)).chain(parts).collect()
+}
+
 impl Oracle<'_> {
     /// Compares the indirect irradiance that `grid` gives surfaces, looked up as a client does (filled, moved off the surface by
     /// [`SURFACE_BIAS`], with `reconstruction`), with what paths find there: first for all surfaces together, then for those in
     /// each of `boxes`³ equal boxes of the grid's bounds that has any light.
     ///
     /// About `places` places are spread evenly over the area of all surfaces, each with both its sides; a side counts if a path
-    /// finds light there, so that the insides of solids, which nobody sees, do not. Of `sampling` the paths are those of each side.
+    /// finds light there and it is [seen](LitPlace::seen) from the open, where a camera may be. The inside of a scanned model
+    /// and the floor under it do not count, although a little light gets there through holes and gaps.
+    /// [`lit_places`](Self::lit_places) tells what is left out. Of `sampling` the paths are those of each side.
     ///
     /// # Errors
     ///
@@ -46,39 +94,69 @@ impl Oracle<'_> {
         sampling: Sampling,
         monitor: &dyn Monitor,
     ) -> Result<Vec<Brightness>, BakeError> {
+        let found = self.lit_places(grid, reconstruction, places, sampling, monitor)?;
+        Ok(brightness_of(&found, grid.lattice(), boxes))
+    }
+
+    /// The places that [`brightness`](Self::brightness) looks at and a path finds light at, each with what was found there and
+    /// whether it counts.
+    ///
+    /// # Errors
+    ///
+    /// [`BakeError::Cancelled`]; the monitor's progress counts sides.
+    ///
+    /// # Panics
+    ///
+    /// If the reconstruction does not [fit](Reconstruction::fits) what the grid holds.
+    pub fn lit_places(
+        &self,
+        grid: &IrradianceGrid,
+        reconstruction: Reconstruction,
+        places: usize,
+        sampling: Sampling,
+        monitor: &dyn Monitor,
+    ) -> Result<Vec<LitPlace>, BakeError> {
         let sides = self.sides(places);
         let traced = self.irradiance(&sides, sampling, monitor)?;
         let filled = fill(grid, &FillOptions::default());
-        let lattice = grid.lattice();
-        let [nx, ny, nz] = lattice.dims.map(|n| n - 1);
-        let (low, high) = (DVec3::from(lattice.origin), DVec3::from(lattice.position(nx, ny, nz)));
-        let step = (high - low) / f64::from(boxes.max(1));
-        let count = usize::from(boxes.max(1));
-        let mut sums = vec![Sums::default(); count * count * count];
-        for ((place, normal), traced) in sides.iter().zip(traced) {
+        let lit = sides.into_iter().zip(traced).filter_map(|((point, normal), traced)| {
             let truth = traced.irradiance.element_sum();
-            if truth <= 0.0 {
-                continue;
-            }
             let filter = SpatialFilter::Trilinear;
-            let baked = filled.surface_irradiance(*place, *normal, SURFACE_BIAS, reconstruction, filter);
-            let at = ((*place - low) / step).to_array().map(|x| (x.max(0.0) as usize).min(count - 1));
-            sums[at[0] + count * (at[1] + count * at[2])].add(&Sums {
-                places: 1,
-                baked: f64::from(baked.element_sum()),
+            let baked = || filled.surface_irradiance(point, normal, SURFACE_BIAS, reconstruction, filter);
+            (truth > 0.0).then(|| LitPlace {
+                point,
+                normal,
+                baked: f64::from(baked().element_sum()),
                 traced: truth,
                 // Channels of one path go together: the worst case.
-                variance: traced.standard_error.element_sum().powi(2),
-            });
-        }
-        let mut all = Sums::default();
-        sums.iter().for_each(|sum| all.add(sum));
-        let parts = sums.iter().enumerate().filter(|(_, sum)| sum.places > 0).map(|(n, sum)| {
-            let corner =
-                DVec3::new((n % count) as f64, (n / count % count) as f64, (n / count / count) as f64);
-            sum.brightness(low + step * corner, low + step * (corner + 1.0))
+                error: traced.standard_error.element_sum(),
+                seen: self.is_seen(grid, point, normal),
+            })
         });
-        Ok(core::iter::once(all.brightness(low, high)).chain(parts).collect())
+        Ok(lit.collect())
+    }
+
+    /// Whether a place a little off a surface is seen from one of the 4 × 4 × 4 vertices around it that light reaches.
+    fn is_seen(&self, grid: &IrradianceGrid, point: DVec3, normal: Vec3) -> bool {
+        let (lattice, sight) = (grid.lattice(), self.stage.sight());
+        let from = self.stage.space.to_bake(point);
+        let around: [core::ops::Range<u16>; 3] = core::array::from_fn(|a| {
+            let (last, step) = (f64::from(lattice.dims[a]) - 1.0, lattice.step[a]);
+            let place = if step > 0.0 { (point[a] - lattice.origin[a]) / step } else { 0.0 };
+            let below = place.clamp(0.0, last).floor();
+            ((below - 1.0).max(0.0) as u16)..((below + 2.0).min(last) as u16 + 1)
+        });
+        let [x, y, z] = around;
+        z.into_iter().any(|k| {
+            y.clone().any(|j| {
+                x.clone().any(|i| {
+                    let way = self.stage.space.to_bake(lattice.position(i, j, k).into()) - from;
+                    grid.is_valid(lattice.index(i, j, k) as usize)
+                        && way.dot(normal) > 0.0
+                        && !sight.occluded(from, way, 1.0)
+                })
+            })
+        })
     }
 
     /// Places in world space \[m\], a little off both sides of about as many points as asked for, spread over all

@@ -4,7 +4,7 @@ use ivg_grid::{IrradianceGrid, Reconstruction, VertexValues};
 use ivg_scene::{FlatScene, Scene};
 
 use crate::cases::{SceneBuilder, plan};
-use crate::reference::{Brightness, Oracle, Sampling};
+use crate::reference::{Brightness, LitPlace, Oracle, Sampling, brightness_of};
 use crate::{BakeOptions, Silent, bake};
 
 /// A room with a block on its floor, lit from its ceiling.
@@ -67,4 +67,36 @@ fn what_is_too_dark_shows() {
     let off = |a: &Brightness, b: &Brightness| (a.ratio / b.ratio - 1.0).abs();
     let farthest = below[1..].iter().zip(&right[1..]).map(|(a, b)| off(a, b)).fold(0.0, f64::max);
     assert!(farthest > 0.4 && off(&below[0], &right[0]) < 0.4, "{below:?}");
+}
+
+/// A block a centimetre above the floor: a little light gets into the gap, and no camera. Between vertices 29 cm apart a grid
+/// knows nothing about it, so that what it says there does not count; what it says between the block and the lamp does.
+#[test]
+fn places_that_nobody_sees_do_not_count() {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(0.7, 0.0, true);
+    let lamp = builder.material(0.0, 10.0, false);
+    builder.cuboid(Vec3::ZERO, Vec3::new(2.0, 1.5, 1.6), wall, true);
+    builder.cuboid(Vec3::new(0.4, 0.01, 0.4), Vec3::new(1.6, 0.5, 1.2), wall, false);
+    builder.quad(Vec3::new(0.8, 1.45, 0.6), Vec3::X * 0.5, Vec3::Z * 0.5, lamp);
+    let scene = builder.build();
+    let options = BakeOptions { dims: [8; 3], photons: 100_000, threads: Some(2), ..BakeOptions::default() };
+    let grid = bake(&scene.0, &scene.1, &plan(&scene.0, 64), &options, &Silent).unwrap().grid;
+    let oracle = Oracle::new(&scene.0, &scene.1).unwrap();
+    let sampling = Sampling { paths: 64, seed: 5, threads: Some(2) };
+    let found = oracle.lit_places(&grid, Reconstruction::ThreeVector, 2000, sampling, &Silent).unwrap();
+    let in_gap = |place: &LitPlace| {
+        let [x, y, z] = place.point.to_array();
+        y < 0.011 && (0.4..1.6).contains(&x) && (0.4..1.2).contains(&z)
+    };
+    let hidden = found.iter().filter(|place| !place.seen && in_gap(place)).count();
+    assert!(hidden > 20, "{hidden}");
+    // Between the block and the lamp nothing is in the way.
+    assert!(found.iter().filter(|place| (0.51..1.44).contains(&place.point.y)).all(|place| place.seen));
+    // What they hold changes nothing.
+    let mut brighter = found.clone();
+    brighter.iter_mut().filter(|place| !place.seen).for_each(|place| place.baked *= 100.0);
+    assert_eq!(brightness_of(&brighter, grid.lattice(), 2), brightness_of(&found, grid.lattice(), 2));
+    brighter.iter_mut().for_each(|place| place.seen = true);
+    assert_ne!(brightness_of(&brighter, grid.lattice(), 2), brightness_of(&found, grid.lattice(), 2));
 }
