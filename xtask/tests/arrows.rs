@@ -23,7 +23,7 @@ const FOREIGN: [(&str, &str, &[&str]); 4] = [
 const FEW_DEPENDENCIES: [(&str, &[&str]); 3] = [
     ("ivg-wire", &["crc32fast", "zerocopy"]),
     ("ivg-format", &["half", "libm", "zerocopy"]),
-    ("pmesh-format", &["zerocopy"]),
+    ("pmesh-format", &["safe_arch", "zerocopy"]),
 ];
 
 fn root() -> PathBuf {
