@@ -76,6 +76,10 @@ pub(crate) fn read(name: &str, stem: &str, bytes: &[u8], folder: &Folder) -> Res
     }
     add_meshes(&mut scene, stem, &models, default_material, with_colours)?;
     drop_unused_default(&mut scene, default_material);
+    if reader.unreferenced() > 0 {
+        let count = reader.unreferenced();
+        scene.warnings.push(format!("{name}: {count} vertices that no face uses: dropped"));
+    }
     Ok(scene)
 }
 

@@ -16,6 +16,8 @@ pub(super) struct CheckedLines<'a> {
     read: usize,
     /// How many `v`, `vt`, `vn` lines there were so far.
     counts: [u64; 3],
+    /// Which vertices faces have named so far, as far as a file of this length can have vertices.
+    named: Vec<bool>,
     /// The first face index beyond the counts of its time: the culprit if tobj finds one out of range at the end.
     beyond: Option<(usize, String)>,
     /// What went wrong, with its line.
@@ -49,6 +51,9 @@ fn has_colours(text: &str) -> bool {
     })
 }
 
+/// Bytes of the shortest line of a vertex that another line follows: `v 0 0 0` and its end.
+const SHORTEST_VERTEX: usize = 8;
+
 /// Kinds of index in a face corner `v/vt/vn`, as error messages name them.
 const INDEX_KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
@@ -61,6 +66,7 @@ impl<'a> CheckedLines<'a> {
             current: Cow::Borrowed(&[]),
             read: 0,
             counts: [0; 3],
+            named: vec![false; text.len() / SHORTEST_VERTEX],
             beyond: None,
             error: None,
             skipped_elements: 0,
@@ -68,6 +74,11 @@ impl<'a> CheckedLines<'a> {
             plain_vertices: 0,
             used_materials: BTreeSet::new(),
         }
+    }
+
+    /// How many of the vertices no face names. tobj leaves them out.
+    pub(super) fn unreferenced(&self) -> u64 {
+        self.counts[0] - self.named.iter().filter(|named| **named).count() as u64
     }
 
     /// An error of tobj with the line that most likely caused it.
@@ -203,6 +214,11 @@ impl<'a> CheckedLines<'a> {
             // tobj computes with twice and three times the index.
             if index.unsigned_abs() > u64::from(u32::MAX) || (index < 0 && index.unsigned_abs() > count) {
                 return bad(out_of_range());
+            }
+            if kind == 0 {
+                let place = if index > 0 { index as u64 - 1 } else { count - index.unsigned_abs() };
+                let place = usize::try_from(place).ok().and_then(|place| self.named.get_mut(place));
+                place.into_iter().for_each(|named| *named = true);
             }
             if index > 0 && index as u64 > count && self.beyond.is_none() {
                 self.beyond = Some((number, out_of_range()));

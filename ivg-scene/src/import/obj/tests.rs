@@ -28,6 +28,16 @@ fn polygons_negative_indices_continued_lines_and_comments_are_read() {
 }
 
 #[test]
+fn vertices_that_no_face_names_are_counted() {
+    let warnings = |text: &str| read_text(text).unwrap().warnings;
+    let dropped = |count: u32| vec![format!("t.obj: {count} vertices that no face uses: dropped")];
+    assert_eq!(warnings(&format!("{CORNERS}f 1 2 3 4\n")), Vec::<String>::new());
+    assert_eq!(warnings(&format!("{CORNERS}f -1 -2 -3\n")), dropped(1));
+    assert_eq!(warnings(&format!("f 1 2 3\n{CORNERS}v 5 5 5\n")), dropped(2), "named before they are there");
+    assert_eq!(warnings(&format!("vt 0 0\nvn 0 0 1\n{CORNERS}f 2/1/1 3/1/1 4/1/1\n")), dropped(1));
+}
+
+#[test]
 fn lines_and_points_are_reported_and_never_become_triangles() {
     let scene = read_text(&format!("{CORNERS}l 1 2 3\np 1\nf 1 2 3\n")).unwrap();
     assert_eq!(scene.meshes[0].triangles.len(), 1);
