@@ -34,7 +34,7 @@ impl LoadedScene {
 
     pub(crate) fn load(path: &Path, lights: Option<&Path>) -> Result<Self, Failure> {
         let options = ImportOptions { lights: lights.map(Into::into) };
-        let scene = import::load(path, &options).map_err(Failure::new)?;
+        let scene = import::load(path, &options).map_err(|error| Failure::scene(path, &error))?;
         for warning in &scene.warnings {
             eprintln!("ivg: warning: {}", shown(warning));
         }

@@ -1,5 +1,7 @@
 //! Between the meshes of a scene and those that have a collapse order.
 
+use std::path::Path;
+
 use glam::DVec3;
 use ivg_scene::{Material, Mesh, Scene};
 use pmesh_format::{IndexedMesh, Wedges};
@@ -27,7 +29,7 @@ pub(crate) fn indexed_mesh(mesh: &Mesh, materials: &[Material]) -> Result<Indexe
     Ok(out)
 }
 
-/// All meshes of a scene, placed by its nodes, as one mesh in world space.
+/// All meshes of the scene from `path`, placed by its nodes, as one mesh in world space.
 ///
 /// Normals and texture coordinates are kept only if every mesh has them: a mesh has one set of attributes. What is left out
 /// for that is named, one sentence each, with what the file asks for and scenes do not have.
@@ -35,10 +37,10 @@ pub(crate) fn indexed_mesh(mesh: &Mesh, materials: &[Material]) -> Result<Indexe
 /// # Errors
 ///
 /// Fails if the scene has no triangle, or a material index does not fit the format's 16 bits.
-pub(crate) fn joined_mesh(scene: &Scene) -> Result<(IndexedMesh, Vec<String>), Failure> {
+pub(crate) fn joined_mesh(path: &Path, scene: &Scene) -> Result<(IndexedMesh, Vec<String>), Failure> {
     let placed = || scene.nodes.iter().map(|node| &scene.meshes[node.mesh as usize]);
     if placed().all(|mesh| mesh.triangles.is_empty()) {
-        return Err(Failure::new(format_args!("{}: the file has no triangle", scene.name)));
+        return Err(Failure::file(path, "the file has no triangle"));
     }
     let with_normals = placed().all(|mesh| !mesh.normals.is_empty());
     let with_uvs = placed().all(|mesh| !mesh.uvs.is_empty());

@@ -2,6 +2,8 @@ use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
 
+use ivg_scene::SceneError;
+
 /// Why a command ended early: one line for the user, and an exit status.
 #[derive(Debug)]
 pub(crate) struct Failure {
@@ -28,6 +30,11 @@ impl Failure {
     /// A file could not be read or written, or its content was refused.
     pub(crate) fn file(path: &Path, error: impl fmt::Display) -> Self {
         Self::new(format_args!("{}: {error}", path.display()))
+    }
+
+    /// A scene could not be read or used; the file is named also where the error names but an object in it.
+    pub(crate) fn scene(path: &Path, error: &SceneError) -> Self {
+        if matches!(error, SceneError::Object { .. }) { Self::file(path, error) } else { Self::new(error) }
     }
 
     pub(crate) fn exit_code(&self) -> ExitCode {

@@ -145,7 +145,7 @@ fn mesh(arguments: &ExtractArguments, bytes: &[u8]) -> Result<ExitCode, Failure>
         );
     }
     files::print(&format!(
-        "{}: level {level} of {finest}: {} vertices, {} faces, error at most {} m; {used} bytes used\n",
+        "{}: level {level} of {finest}: {} vertices, {} faces, estimated error at most {} m; {used} bytes used\n",
         arguments.out.display(),
         mesh.positions.len(),
         mesh.triangles.len(),

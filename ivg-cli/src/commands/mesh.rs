@@ -18,9 +18,10 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<ExitCode, Failure> {
     files::require_extension(&arguments.out, &["pmesh"])?;
     let encode_options = arguments.options()?;
     let mut watch = Watch::start();
-    let scene = import::load(&arguments.mesh, &ImportOptions::default()).map_err(Failure::new)?;
-    scene.check().map_err(Failure::new)?;
-    let (mesh, left_out) = convert::joined_mesh(&scene)?;
+    let refused = |error| Failure::scene(&arguments.mesh, &error);
+    let scene = import::load(&arguments.mesh, &ImportOptions::default()).map_err(refused)?;
+    scene.check().map_err(refused)?;
+    let (mesh, left_out) = convert::joined_mesh(&arguments.mesh, &scene)?;
     watch.lap("read");
 
     let attributes = AttributeWeights {
