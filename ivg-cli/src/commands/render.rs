@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 use ivg_bake::BakeError;
 use ivg_bake::reference::{KnownLight, Oracle, Picture, Sampling, Shown};
 use ivg_format::{Encoding, Quantity};
-use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction, SpatialFilter};
+use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction, SURFACE_BIAS, SpatialFilter};
 use ivg_render::{Image, RenderOptions, RenderScene};
 use ivg_scene::plan::{self, PlanOptions};
 use ivg_scene::{Camera, EffectPlan, Scene};
@@ -52,7 +52,8 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
         (IndirectArgument::Gather, Some((grid, reconstruction))) => {
             let light = KnownLight {
                 irradiance: &|point, normal| {
-                    grid.irradiance(point, normal, reconstruction, SpatialFilter::default())
+                    let filter = SpatialFilter::default();
+                    grid.surface_irradiance(point, normal, SURFACE_BIAS, reconstruction, filter)
                 },
                 shortest_flight: grid.lattice().step.into_iter().fold(0.0, f64::max),
             };
