@@ -192,7 +192,9 @@ impl Header {
         }
         let wedges = if attributes.seams {
             // Wedges without attributes would cost a file next to nothing and a reader much.
-            attributes.on_wedges() && wedge_count >= vertex_count && wedge_count <= MAX_COUNT
+            attributes.on_wedges()
+                && (vertex_count..=MAX_COUNT).contains(&wedge_count)
+                && (vertex_count > 0 || wedge_count == 0)
         } else {
             wedge_count == vertex_count
         };

@@ -60,7 +60,7 @@ impl<const N: usize> Neighbours<N> {
     /// Adds a face, by the edges from the parent.
     #[inline(always)]
     fn turn(&mut self, a: [i64; 3], b: [i64; 3]) {
-        self.normal.iter_mut().zip(cross(a, b)).for_each(|(sum, x)| *sum += x);
+        self.normal.iter_mut().zip(cross(a, b)).for_each(|(sum, x)| *sum = sum.wrapping_add(x));
     }
 
     fn known(&self) -> &[Point] {

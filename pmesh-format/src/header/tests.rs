@@ -50,6 +50,8 @@ fn every_defect_of_header_and_directory_has_its_code_and_its_place() {
         // Several wedges a vertex without an attribute; wedges without seams.
         ("COUNTS", 60, |p| p.specific[22] &= !7),
         ("COUNTS", 60, |p| p.specific[22] &= !16),
+        // Wedges without a vertex.
+        ("COUNTS", 60, |p| put32(&mut p.specific, 0, 0)),
         ("COUNTS", 64, |p| put32(&mut p.specific, 8, MAX_COUNT + 1)),
         ("COUNTS", 68, |p| put32(&mut p.specific, 12, 0)),
         ("COUNTS", 68, |p| put32(&mut p.specific, 12, 31)),
