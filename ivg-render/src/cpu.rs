@@ -57,8 +57,10 @@ pub fn execute(plan: &FramePlan<'_>) -> Image {
     }
     let mut pixels = direct;
     pixels.par_iter_mut().enumerate().for_each(|(sample, pixel)| {
-        *pixel =
-            view.surface(sample).map_or(plan.background, |surface| shade::radiance(plan, &surface, *pixel));
+        *pixel = match view.surface(sample) {
+            Some(surface) => shade::radiance(plan, &surface, *pixel),
+            None => plan.background.radiance(sample),
+        };
     });
     Image::new(width, height, pixels).reduced(plan.supersampling)
 }

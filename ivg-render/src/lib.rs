@@ -25,6 +25,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod background;
 pub mod camera;
 pub mod compare;
 mod cpu;

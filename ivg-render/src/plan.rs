@@ -4,6 +4,7 @@ use glam::{Mat4, Vec3, Vec4};
 use ivg_grid::{IrradianceGrid, Reconstruction, SURFACE_BIAS, SpatialFilter};
 use ivg_scene::Texture;
 
+use crate::background::{Background, Panorama};
 use crate::geometry::Geometry;
 use crate::layout::{
     DIRECTIONAL_TILES, FaceRecord, FrameRecord, LIGHT_DIRECTIONAL, LightRecord, MaterialRecord,
@@ -42,8 +43,8 @@ pub struct FramePlan<'scene> {
     pub height: u32,
     /// Samples a pixel along each axis.
     pub supersampling: u32,
-    /// Radiance where there is no surface \[W/(m² sr)\].
-    pub background: Vec3,
+    /// What is seen where there is no surface.
+    pub background: Background<'scene>,
     /// What is drawn.
     pub geometry: Geometry,
     /// What is the same for all pixels.
@@ -128,11 +129,17 @@ impl<'scene> FramePlan<'scene> {
             filter: options.filter,
             origin: scene.origin,
         });
+        let (width, height) = options.sample_size();
+        let image = scene.sky_image.as_ref().filter(|_| options.sky);
+        let background = Background {
+            even: scene.sky.filter(|_| options.sky).unwrap_or(Vec3::ZERO),
+            image: image.map(|sky| Panorama::new(sky, &scene.camera, [width, height])).transpose()?,
+        };
         let mut plan = Self {
             width: options.width,
             height: options.height,
             supersampling: options.supersampling,
-            background: scene.sky.filter(|_| options.sky).unwrap_or(Vec3::ZERO),
+            background,
             geometry,
             frame: FrameRecord::default(),
             lights,

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, DAffine3, DVec3, Mat3A, Vec2, Vec3};
 use ivg_grid::IrradianceGrid;
-use ivg_scene::{Camera, FlatScene, Light, LightKind, Material, Scene, Texture};
+use ivg_scene::{Camera, FlatScene, Light, LightKind, Material, Scene, SkyImage, Texture};
 use pmesh_format::IndexedMesh;
 
 use crate::RenderError;
@@ -41,9 +41,10 @@ pub struct RenderScene {
     pub textures: Vec<Texture>,
     /// Lights without a surface.
     pub lights: Vec<Light>,
-    /// Radiance behind everything \[W/(m² sr)\], of the image of a sky its mean; it lights nothing here, what the sky adds is in
-    /// the grid.
+    /// Radiance behind everything \[W/(m² sr)\]; it lights nothing here, what the sky adds is in the grid.
     pub sky: Option<Vec3>,
+    /// Radiance behind everything that differs from direction to direction; adds to `sky`.
+    pub sky_image: Option<SkyImage>,
     /// From where the scene is seen.
     pub camera: Camera,
     /// Indirect light, every vertex with a value (see `ivg_grid::fill`).
@@ -68,7 +69,8 @@ impl RenderScene {
             materials: scene.materials.clone(),
             textures: scene.textures.clone(),
             lights: scene.lights.clone(),
-            sky: scene.mean_sky(),
+            sky: scene.sky,
+            sky_image: scene.sky_image.clone(),
             camera,
             grid: None,
         }
@@ -106,6 +108,16 @@ impl RenderScene {
         }
         if !self.origin.is_finite() || self.sky.is_some_and(|sky| !sky.is_finite()) {
             return Err(RenderError::NotFinite { what: "the scene's origin or sky".into() });
+        }
+        if let Some(sky) = &self.sky_image {
+            let texels = u64::from(sky.width) * u64::from(sky.height);
+            if texels == 0 || sky.texels.len() as u64 != texels {
+                let problem = "its texels do not fit its size";
+                return Err(RenderError::Texture { name: sky.name.clone(), problem });
+            }
+            if !(sky.rotation.is_finite() && sky.texels.as_flattened().iter().all(|x| x.is_finite())) {
+                return Err(RenderError::NotFinite { what: format!("the sky {:?}", sky.name) });
+            }
         }
         if let Some(grid) = &self.grid {
             let missing = (0..grid.vertex_count()).filter(|vertex| !grid.has_value(*vertex)).count();

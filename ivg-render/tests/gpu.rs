@@ -32,6 +32,7 @@ use ivg_render::{
     GpuError, GpuMesh, GpuRenderer, Image, RenderError, RenderMesh, RenderOptions, RenderScene, compare,
     render_cpu,
 };
+use ivg_scene::SkyImage;
 use pmesh_format::{LevelChange, Replay};
 use scenes::progressive::{Sheet, sheet};
 
@@ -106,6 +107,20 @@ fn a_box_with_area_light_and_shadows() {
 #[test]
 fn textures_point_spot_and_sun_light() {
     check(&scenes::lamps(), &options());
+}
+
+/// The image is put in where the device says that there is no surface.
+#[test]
+fn the_image_of_a_sky_is_behind_everything() {
+    let mut scene = scenes::lamps();
+    let texels = (0..32).map(|n| [n as f32 / 16.0, 0.5, (n % 8) as f32 / 8.0]).collect();
+    scene.sky_image = Some(SkyImage { name: "sky".into(), width: 8, height: 4, rotation: 1.0, texels });
+    check(&scene, &options());
+    let [cpu, gpu] =
+        [render_cpu(&scene, &options()).unwrap(), renderer().render(&scene, &options()).unwrap()];
+    let upper = 0..2 * 160;
+    assert_eq!(cpu.pixels()[upper.clone()], gpu.pixels()[upper]);
+    assert_ne!(cpu.pixel(0, 0), cpu.pixel(159, 0));
 }
 
 #[test]

@@ -11,6 +11,9 @@ use crate::{GpuError, Image};
 /// Bytes of a sample of the picture: four f32.
 const SAMPLE_BYTES: u32 = 16;
 
+/// Fourth number of a sample that sees no surface; the shading pass writes 1.
+const NOTHING: f64 = 0.0;
+
 /// Carries out a plan, with progressive meshes beside its geometry, and waits for the picture.
 pub(super) fn frame(
     device: &wgpu::Device,
@@ -58,8 +61,9 @@ pub(super) fn frame(
     let mut pixels = Vec::with_capacity(width as usize * height as usize);
     for row in bytes.chunks_exact(bytes_per_row as usize) {
         for sample in row.chunks_exact(SAMPLE_BYTES as usize).take(width as usize) {
-            let [r, g, b, _]: [f32; 4] = bytemuck::pod_read_unaligned(sample);
-            pixels.push(Vec3::new(r, g, b));
+            let [r, g, b, surface]: [f32; 4] = bytemuck::pod_read_unaligned(sample);
+            let nothing = surface == NOTHING as f32;
+            pixels.push(if nothing { plan.background.radiance(pixels.len()) } else { Vec3::new(r, g, b) });
         }
     }
     Ok(Image::new(width, height, pixels).reduced(plan.supersampling))
@@ -113,7 +117,6 @@ impl Recorded<'_> {
     fn record_shade(&self, encoder: &mut CommandEncoder) {
         let Self { device, pipelines, plan, resources, meshes } = *self;
         let view = resources.colour.create_view(&wgpu::TextureViewDescriptor::default());
-        let [r, g, b] = plan.background.to_array().map(f64::from);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shade"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -121,7 +124,7 @@ impl Recorded<'_> {
                 depth_slice: None,
                 resolve_target: None,
                 ops: Operations {
-                    load: LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                    load: LoadOp::Clear(wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: NOTHING }),
                     store: StoreOp::Store,
                 },
             })],

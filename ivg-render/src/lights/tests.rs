@@ -33,6 +33,7 @@ fn geometry(polygons: &[(Vec<Vec3>, Vec3)], two_sided: bool) -> (Geometry, Vec<M
         textures: Vec::new(),
         lights: Vec::new(),
         sky: None,
+        sky_image: None,
         camera: Camera { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 1.0 },
         grid: None,
     };

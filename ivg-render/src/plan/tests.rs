@@ -33,6 +33,7 @@ fn scene() -> RenderScene {
             kind: LightKind::Point { position: DVec3::Z, intensity: Vec3::ONE },
         }],
         sky: Some(Vec3::ONE),
+        sky_image: None,
         camera: Camera { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 1.0 },
         grid: Some(IrradianceGrid::from_parts(lattice, vectors, vec![255; 8], vec![0; 8]).unwrap()),
     }
@@ -61,7 +62,7 @@ fn a_frame_holds_only_what_the_effect_plan_names() {
             plan.faces.len(),
             plan.grid.is_some(),
             plan.material_textures.iter().flatten().count(),
-            plan.background != Vec3::ZERO,
+            plan.background.radiance(0) != Vec3::ZERO,
         )
     };
     assert_eq!(parts(&[]), (0, 0, false, 0, false));

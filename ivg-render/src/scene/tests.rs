@@ -22,6 +22,7 @@ fn scene_of(mesh: RenderMesh) -> RenderScene {
         textures: Vec::new(),
         lights: Vec::new(),
         sky: None,
+        sky_image: None,
         camera: Camera { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 1.0 },
         grid: None,
     }
@@ -93,6 +94,7 @@ fn values_that_are_not_finite_are_named() {
         (|scene| scene.meshes[0].transform.translation.x = f32::INFINITY, "mesh 0"),
         (|scene| scene.materials[0].emission.z = f32::NAN, "default"),
         (|scene| scene.sky = Some(Vec3::INFINITY), "sky"),
+        (|scene| scene.sky_image = Some(sky([0.0, f32::NAN, 0.0])), "sky.hdr"),
         (
             |scene| {
                 let kind = LightKind::Point { position: DVec3::NAN, intensity: Vec3::ONE };
@@ -115,6 +117,13 @@ fn textures_must_exist_and_have_all_texels() {
         scene.textures.push(Texture { name: "t".into(), width: 2, height: 2, format, texels: vec![0; 11] });
     });
     assert!(matches!(short, RenderError::Texture { .. }));
+    let sky = error_after(|scene| scene.sky_image = Some(SkyImage { height: 2, ..sky([1.0; 3]) }));
+    assert!(matches!(sky, RenderError::Texture { .. }));
+}
+
+/// A sky of one texel.
+fn sky(texel: [f32; 3]) -> SkyImage {
+    SkyImage { name: "sky.hdr".into(), width: 1, height: 1, rotation: 0.0, texels: vec![texel] }
 }
 
 #[test]

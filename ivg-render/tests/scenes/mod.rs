@@ -94,6 +94,7 @@ pub(crate) fn scene(meshes: Vec<RenderMesh>, materials: Vec<Material>, camera: C
         textures: Vec::new(),
         lights: Vec::new(),
         sky: None,
+        sky_image: None,
         camera,
         grid: None,
     }

@@ -33,6 +33,7 @@ fn with_light<T>(
         textures: Vec::new(),
         lights: vec![Light { name: "lamp".into(), kind }],
         sky: None,
+        sky_image: None,
         camera: Camera { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, vertical_fov: 1.0 },
         grid: None,
     };
