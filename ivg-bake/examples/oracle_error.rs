@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! cargo run --release -p ivg-bake --example oracle_error -- [SCENE] [--lights FILE] [--grid NXxNYxNZ]
-//!     [--bounds x0,y0,z0,x1,y1,z1] [--photons N] [--seeds N] [--vertices N] [--paths N] [--estimator NAME]
-//!     [--surfaces]
+//!     [--bounds x0,y0,z0,x1,y1,z1] [--photons N[,N...]] [--seeds N] [--vertices N] [--paths N] [--estimator NAME]
+//!     [--surfaces] [--json FILE]
 //! ```
 //!
 //! SCENE is anything `ivg` reads; without it, a closed box with a lit ceiling and two boxes in it. The vertices compared
@@ -11,32 +11,41 @@
 //! `--surfaces`, among those that light reaches and that are closer; the oracle is then asked a 32nd of a step nearer to the
 //! middle of the grid, since a vertex may lie in a wall. Of all seeds the median is printed of
 //!
-//! * the root mean square error of all components of the six vectors, relative to the root mean square of the oracle's,
+//! * the root mean square error of all components of the six vectors, without the part that is the oracle's own, relative to
+//!   the root mean square of the oracle's values,
 //! * the same of the components along the hemispheres' axes (irradiance of axis-aligned surfaces),
 //! * the mean of those axis components over the oracle's,
 //! * the CPU time of a bake (one thread).
+//!
+//! `--json` writes the same, where the vertices are, and the oracle's vectors for them.
 
 #![allow(clippy::print_stdout, reason = "printing is what this program is for")]
 
 use std::path::PathBuf;
-use std::time::Instant;
 
+use clock::cpu_seconds;
 use common::{AnyError, numbers, plan_of, vertices_at};
 use glam::DVec3;
 use ivg_bake::reference::{GatheredVectors, Oracle, Sampling};
 use ivg_bake::{BakeOptions, Estimator, Silent, bake};
 
+#[allow(dead_code, unused_imports, reason = "shared with other examples")]
 mod common;
+
+#[path = "common/clock.rs"]
+mod clock;
 
 struct Arguments {
     scene: Option<PathBuf>,
     lights: Option<PathBuf>,
     options: BakeOptions,
+    photons: Vec<u64>,
     seeds: u64,
     estimators: Vec<Estimator>,
     vertices: usize,
     paths: u32,
     near_surfaces: bool,
+    json: Option<PathBuf>,
 }
 
 fn main() -> Result<(), AnyError> {
@@ -67,42 +76,64 @@ fn main() -> Result<(), AnyError> {
     let sampling = Sampling { paths: arguments.paths, seed: 99, threads: None };
     let truth = oracle.irradiance_vectors(&points, sampling, &Silent)?;
     println!(
-        "{} triangles, {:?} vertices, {} compared, {} photons, {} seeds; before the first photon {before_photons:.2} CPU-s",
+        "{} triangles, {:?} vertices, {} compared, {} seeds; before the first photon {before_photons:.2} CPU-s",
         flat.triangles.len(),
         options.dims,
         points.len(),
-        options.photons,
         arguments.seeds
     );
     println!("oracle: {} paths a point, own error {:.2} %", arguments.paths, 100.0 * own_error(&truth));
-    println!("{:<22} {:>10} {:>10} {:>8} {:>8}", "estimator", "all", "I_d.d", "mean", "CPU-s");
+    println!(
+        "{:<22} {:>10} {:>10} {:>10} {:>8} {:>8}",
+        "estimator", "photons", "all", "I_d.d", "mean", "CPU-s"
+    );
+    let mut rows = Vec::new();
     for &estimator in &arguments.estimators {
-        let mut errors = Vec::new();
-        for seed in 1..=arguments.seeds {
-            let options = BakeOptions { estimator, seed, ..options.clone() };
-            let started = cpu_seconds();
-            let result = bake(&scene, &flat, &plan, &options, &Silent)?;
-            let seconds = cpu_seconds() - started;
-            let baked: Vec<_> = vertices.iter().map(|&v| result.grid.vectors()[v]).collect();
-            let [all, axis, mean] = compare(&baked, &truth);
-            errors.push([all, axis, mean, seconds]);
+        for &photons in &arguments.photons {
+            let mut errors = Vec::new();
+            for seed in 1..=arguments.seeds {
+                let options = BakeOptions { estimator, seed, photons, ..options.clone() };
+                let started = cpu_seconds();
+                let result = bake(&scene, &flat, &plan, &options, &Silent)?;
+                let seconds = cpu_seconds() - started;
+                let baked: Vec<_> = vertices.iter().map(|&v| result.grid.vectors()[v]).collect();
+                let [all, axis, mean] = compare(&baked, &truth);
+                errors.push([all, axis, mean, seconds]);
+            }
+            let row: [f64; 4] = core::array::from_fn(|n| median(errors.iter().map(|e| e[n]).collect()));
+            let [all, axis, mean, seconds] = row;
+            println!(
+                "{:<22} {photons:>10} {:>8.2} % {:>8.2} % {mean:>8.4} {seconds:>8.2}",
+                estimator.name(),
+                100.0 * all,
+                100.0 * axis
+            );
+            rows.push(format!(
+                r#"{{"estimator": "{}", "photons": {photons}, "all": {all:?}, "axis": {axis:?}, "mean": {mean:?}, "cpu_seconds": {seconds:?}}}"#,
+                estimator.name()
+            ));
         }
-        let median = |n: usize| {
-            let mut values: Vec<f64> = errors.iter().map(|e| e[n]).collect();
-            values.sort_by(f64::total_cmp);
-            let half = values.len() / 2;
-            if values.len() % 2 == 1 { values[half] } else { 0.5 * (values[half - 1] + values[half]) }
-        };
-        println!(
-            "{:<22} {:>8.2} % {:>8.2} % {:>8.4} {:>8.2}",
-            estimator.name(),
-            100.0 * median(0),
-            100.0 * median(1),
-            median(2),
-            median(3)
+    }
+    if let Some(path) = &arguments.json {
+        let places: Vec<[f64; 3]> = points.iter().map(|p| p.to_array()).collect();
+        let vectors: Vec<_> = truth.iter().map(|t| t.vectors).collect();
+        let errors: Vec<_> = truth.iter().map(|t| t.standard_error).collect();
+        let text = format!(
+            r#"{{"dims": {:?}, "lit": {}, "before_photons": {before_photons:?}, "own_error": {:?}, "points": {places:?}, "vectors": {vectors:?}, "standard_error": {errors:?}, "rows": [{}]}}"#,
+            options.dims,
+            surroundings.grid.valid_count(),
+            own_error(&truth),
+            rows.join(", ")
         );
+        std::fs::write(path, text)?;
     }
     Ok(())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let half = values.len() / 2;
+    if values.len() % 2 == 1 { values[half] } else { 0.5 * (values[half - 1] + values[half]) }
 }
 
 /// Root mean square of the standard errors over that of the values.
@@ -113,36 +144,30 @@ fn own_error(truth: &[GatheredVectors]) -> f64 {
     (errors / values).sqrt()
 }
 
-/// Relative error of all components, of the axis components, and the ratio of their means.
+/// Relative error of all components, of the axis components, both without the oracle's own, and the ratio of their means.
 fn compare(baked: &[ivg_grid::HemisphereVectors], truth: &[GatheredVectors]) -> [f64; 3] {
     let [mut all, mut axis] = [[0.0; 2]; 2];
     let mut means = [0.0; 2];
     for (baked, truth) in baked.iter().zip(truth) {
         let found = baked.as_flattened().as_flattened();
         let expected = truth.vectors.as_flattened().as_flattened();
-        for (n, (&found, &expected)) in found.iter().zip(expected).enumerate() {
+        let own = truth.standard_error.as_flattened().as_flattened();
+        for (n, ((&found, &expected), own)) in found.iter().zip(expected).zip(own).enumerate() {
             let found = f64::from(found);
-            all[0] += (found - expected).powi(2);
+            let square = (found - expected).powi(2) - own * own;
+            all[0] += square;
             all[1] += expected.powi(2);
             // The component n % 3 of the hemisphere n / 9, whose axis is half its number.
             if n % 3 == n / 9 / 2 {
-                axis[0] += (found - expected).powi(2);
+                axis[0] += square;
                 axis[1] += expected.powi(2);
                 means[0] += found.abs();
                 means[1] += expected.abs();
             }
         }
     }
-    [(all[0] / all[1]).sqrt(), (axis[0] / axis[1]).sqrt(), means[0] / means[1]]
-}
-
-/// CPU time of this thread \[s\] where Linux tells it, else the time since the first call.
-fn cpu_seconds() -> f64 {
-    static START: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
-    let wall = || START.get_or_init(Instant::now).elapsed().as_secs_f64();
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = text.and_then(|t| t.split_whitespace().next().and_then(|n| n.parse::<f64>().ok()));
-    nanoseconds.map_or_else(wall, |n| n * 1e-9)
+    let relative = |[square, signal]: [f64; 2]| (square.max(0.0) / signal).sqrt();
+    [relative(all), relative(axis), means[0] / means[1]]
 }
 
 fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, AnyError> {
@@ -150,11 +175,13 @@ fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, AnyEr
         scene: None,
         lights: None,
         options: BakeOptions::default(),
+        photons: vec![BakeOptions::default().photons],
         seeds: 8,
         estimators: Estimator::ALL.into(),
         vertices: 32,
         paths: 65_536,
         near_surfaces: false,
+        json: None,
     };
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value"));
@@ -165,7 +192,9 @@ fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, AnyEr
                 let [x0, y0, z0, x1, y1, z1] = numbers(&value()?, ',')?;
                 parsed.options.bounds = Some((DVec3::new(x0, y0, z0), DVec3::new(x1, y1, z1)));
             }
-            "--photons" => parsed.options.photons = value()?.parse()?,
+            "--photons" => {
+                parsed.photons = value()?.split(',').map(str::parse).collect::<Result<_, _>>()?;
+            }
             "--estimator" => {
                 let name = value()?;
                 let estimator = Estimator::from_name(&name).ok_or_else(|| format!("no estimator {name}"))?;
@@ -175,6 +204,7 @@ fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, AnyEr
             "--vertices" => parsed.vertices = value()?.parse()?,
             "--paths" => parsed.paths = value()?.parse()?,
             "--surfaces" => parsed.near_surfaces = true,
+            "--json" => parsed.json = Some(value()?.into()),
             option if option.starts_with("--") => return Err(format!("unknown option {option}").into()),
             _ => parsed.scene = Some(argument.into()),
         }

@@ -6,11 +6,18 @@
 //! is less than f32 resolves, and boxes are padded beyond both that and the rounding of the box test itself; and it misses every box along directions with a
 //! component of −0.
 //!
+//! Flights of a million photons in the demo scenes find their hits in this tree 1.0 to 1.4 times as fast as in a binary one
+//! of the same crate, and slower builds gain less than they cost (`cargo xtask peers bake --only rays` prints both), so
+//! others exist for that comparison alone.
+//!
 //! Of hits at equal distance the one with the lowest triangle index counts, so that no result depends on the order of
 //! nodes. The tree is built on one thread (the crate's feature `parallel` is off) and is the same every time.
 
 use glam::{Vec3, Vec3A};
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+#[cfg(any(test, feature = "rays"))]
+use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
@@ -32,10 +39,32 @@ const LEAF_TRIANGLES: u32 = 3;
 /// Levels of the wide tree that the traversal stack of obvhs holds.
 const MAX_DEPTH: usize = 31;
 
+/// How long a tree may take to build: presets of obvhs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Build {
+    #[cfg(any(test, feature = "rays"))]
+    Fast,
+    Medium,
+    #[cfg(any(test, feature = "rays"))]
+    VerySlow,
+}
+
+impl Build {
+    fn preset(self) -> BvhBuildParams {
+        match self {
+            #[cfg(any(test, feature = "rays"))]
+            Self::Fast => BvhBuildParams::fast_build(),
+            Self::Medium => BvhBuildParams::medium_build(),
+            #[cfg(any(test, feature = "rays"))]
+            Self::VerySlow => BvhBuildParams::very_slow_build(),
+        }
+    }
+}
+
 /// The triangles of a scene, ready to be hit by rays. All coordinates are bake space.
 #[derive(Debug)]
-pub(crate) struct TraceScene {
-    tree: CwBvh,
+pub(crate) struct TraceScene<T = CwBvh> {
+    tree: T,
     /// In the order of the tree's leaves.
     triangles: Vec<Corners>,
     /// Index in the scene of each of `triangles`.
@@ -53,7 +82,9 @@ pub(crate) struct Hit {
     pub(crate) weights: [f32; 3],
 }
 
-struct PaddedBox(Aabb);
+/// A box that a ray cannot miss by rounding.
+#[derive(Debug)]
+pub(crate) struct PaddedBox(Aabb);
 
 impl Boundable for PaddedBox {
     fn aabb(&self) -> Aabb {
@@ -68,6 +99,17 @@ impl TraceScene {
     ///
     /// [`BakeError::TreeTooDeep`] for triangles nested so that the traversal stack would not hold the way down.
     pub(crate) fn new(triangles: &[[Vec3; 3]]) -> Result<Self, BakeError> {
+        Self::built(triangles, Build::Medium)
+    }
+}
+
+impl<T: Tree> TraceScene<T> {
+    /// [`TraceScene::new`] with a tree and a preset of one's choice.
+    ///
+    /// # Errors
+    ///
+    /// As [`TraceScene::new`].
+    pub(crate) fn built(triangles: &[[Vec3; 3]], build: Build) -> Result<Self, BakeError> {
         let solid: Vec<u32> = (0u32..)
             .zip(triangles)
             .filter(|(_, [a, b, c])| (b - a).as_dvec3().cross((c - a).as_dvec3()).length_squared() > 0.0)
@@ -83,11 +125,11 @@ impl TraceScene {
                 PaddedBox(Aabb { min: Vec3A::from(low) - padding, max: Vec3A::from(high) + padding })
             })
             .collect();
-        let tree = if boxes.is_empty() { CwBvh::default() } else { build(&boxes) };
-        if depth(&tree.nodes) > MAX_DEPTH {
+        let tree = if boxes.is_empty() { T::default() } else { T::over(&boxes, build.preset()) };
+        if tree.is_too_deep() {
             return Err(BakeError::TreeTooDeep);
         }
-        let indices: Vec<u32> = tree.primitive_indices.iter().map(|&leaf| solid[leaf as usize]).collect();
+        let indices: Vec<u32> = tree.leaves().iter().map(|&leaf| solid[leaf as usize]).collect();
         let triangles = indices.iter().map(|&index| corners(triangles[index as usize])).collect();
         Ok(Self { tree, triangles, indices })
     }
@@ -99,7 +141,7 @@ impl TraceScene {
         let sheared = ShearedRay::new(origin, direction);
         let mut best: Option<Hit> = None;
         let ray = Ray::new(origin.into(), direction.into(), 0.0, limit.min(f32::MAX));
-        self.tree.ray_traverse(ray, &mut RayHit::none(), |ray, leaf| {
+        self.tree.closest(ray, |ray, leaf| {
             let Some(crossing) = sheared.intersect(&self.triangles[leaf], ray.tmax) else {
                 return f32::INFINITY;
             };
@@ -120,7 +162,7 @@ impl TraceScene {
         let direction = unsigned_zeros(direction);
         let sheared = ShearedRay::new(origin, direction);
         let ray = Ray::new(origin.into(), direction.into(), 0.0, limit.min(f32::MAX));
-        !self.tree.ray_traverse_miss(ray, |ray, leaf| {
+        self.tree.any(ray, |ray, leaf| {
             // Any number below the ray's limit ends the traversal; a hit exactly at the limit counts as well.
             sheared.intersect(&self.triangles[leaf], ray.tmax).map_or(f32::INFINITY, |_| f32::NEG_INFINITY)
         })
@@ -134,18 +176,93 @@ fn unsigned_zeros(direction: Vec3) -> Vec3 {
     direction + Vec3::ZERO
 }
 
-/// obvhs' preset "medium": slower builds gain nothing measurable for this tree.
-fn build(boxes: &[PaddedBox]) -> CwBvh {
-    let preset = BvhBuildParams::medium_build();
-    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
+/// A tree of boxes whose leaves name triangles.
+pub(crate) trait Tree: Default {
+    /// The tree over `boxes`, of which there is at least one.
+    fn over(boxes: &[PaddedBox], preset: BvhBuildParams) -> Self;
+
+    /// The numbers of the boxes in the order of the leaves.
+    fn leaves(&self) -> &[u32];
+
+    /// Whether the traversal stack would not hold the way down.
+    fn is_too_deep(&self) -> bool;
+
+    /// Calls `test` with every leaf whose box the ray may pass; each answer below the ray's limit becomes its limit.
+    fn closest(&self, ray: Ray, test: impl FnMut(&Ray, usize) -> f32);
+
+    /// Whether `test` answers with less than the ray's limit for a leaf whose box the ray may pass.
+    fn any(&self, ray: Ray, test: impl FnMut(&Ray, usize) -> f32) -> bool;
+}
+
+impl Tree for CwBvh {
+    fn over(boxes: &[PaddedBox], preset: BvhBuildParams) -> Self {
+        bvh2_to_cwbvh(&binary(boxes, &preset), LEAF_TRIANGLES, true, false)
+    }
+
+    fn leaves(&self) -> &[u32] {
+        &self.primitive_indices
+    }
+
+    fn is_too_deep(&self) -> bool {
+        depth(&self.nodes) > MAX_DEPTH
+    }
+
+    #[inline]
+    fn closest(&self, ray: Ray, test: impl FnMut(&Ray, usize) -> f32) {
+        self.ray_traverse(ray, &mut RayHit::none(), test);
+    }
+
+    #[inline]
+    fn any(&self, ray: Ray, test: impl FnMut(&Ray, usize) -> f32) -> bool {
+        !self.ray_traverse_miss(ray, test)
+    }
+}
+
+/// The tree that bakes do not use.
+#[cfg(any(test, feature = "rays"))]
+pub(crate) type BinaryTree = Bvh2;
+
+#[cfg(any(test, feature = "rays"))]
+impl Tree for Bvh2 {
+    fn over(boxes: &[PaddedBox], preset: BvhBuildParams) -> Self {
+        let mut tree = binary(boxes, &preset);
+        collapse(&mut tree, preset.max_prims_per_leaf, preset.collapse_traversal_cost);
+        let ratio = preset.reinsertion_batch_ratio * preset.post_collapse_reinsertion_batch_ratio_multiplier;
+        ReinsertionOptimizer::default().run(&mut tree, ratio, None);
+        tree
+    }
+
+    fn leaves(&self) -> &[u32] {
+        &self.primitive_indices
+    }
+
+    fn is_too_deep(&self) -> bool {
+        // The stack grows with the tree.
+        false
+    }
+
+    #[inline]
+    fn closest(&self, ray: Ray, test: impl FnMut(&Ray, usize) -> f32) {
+        self.ray_traverse(ray, &mut RayHit::none(), test);
+    }
+
+    #[inline]
+    fn any(&self, ray: Ray, test: impl FnMut(&Ray, usize) -> f32) -> bool {
+        !self.ray_traverse_miss(ray, test)
+    }
+}
+
+/// A binary tree over boxes.
+fn binary(boxes: &[PaddedBox], preset: &BvhBuildParams) -> Bvh2 {
+    let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
         preset.ploc_search_distance,
         boxes,
         (0u32..).zip(boxes).map(|(index, _)| index).collect(),
         preset.sort_precision,
         preset.search_depth_threshold,
     );
-    ReinsertionOptimizer::default().run(&mut binary, preset.reinsertion_batch_ratio, None);
-    bvh2_to_cwbvh(&binary, LEAF_TRIANGLES, true, false)
+    ReinsertionOptimizer::default().run(&mut tree, preset.reinsertion_batch_ratio, None);
+    tree
 }
 
 /// Levels of the tree below and including the root.

@@ -75,7 +75,8 @@
 //!
 //! # Features
 //!
-//! `cases` adds the module `cases`: the hard cases as functions; `fuzz` adds what fuzz targets call. Neither changes a result.
+//! `cases` adds the module `cases`: the hard cases as functions; `rays` adds the module `rays`, which measures how fast rays find
+//! what they hit; `fuzz` adds what fuzz targets call. None changes a result.
 
 #![forbid(unsafe_code)]
 
@@ -97,6 +98,8 @@ mod monitor;
 mod options;
 mod overlap;
 mod pilot;
+#[cfg(any(test, feature = "rays"))]
+pub mod rays;
 mod ready;
 pub mod reference;
 mod region;
