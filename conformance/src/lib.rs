@@ -3,6 +3,7 @@
 //! - [`vectors`] makes small files, right and wrong, with the verdict and the error code that a reader must give for each.
 //!   `cargo run -p conformance --bin generate` writes them to `conformance/vectors/`, with a manifest for readers in other
 //!   languages, and the seeds of the fuzz targets to `fuzz/corpus/`.
+//! - [`suite`] makes the tests of them that `conformance/PROTOCOL.md` describes, and checks that each shows one thing.
 //! - [`oracles`] says what must hold for any bytes whatever: the bodies of the fuzz targets, which the tests here call with
 //!   all vectors and seeds.
 //! - [`mod@reference`] is a second reader of `.pmesh` packets, written from the specification alone, with which the first is compared.
@@ -24,5 +25,6 @@ pub mod choices;
 pub mod invented;
 pub mod oracles;
 pub mod reference;
+pub mod suite;
 pub mod surfaces;
 pub mod vectors;

@@ -4,16 +4,15 @@
 pub mod edit;
 mod ivg;
 pub mod levels;
-mod manifest;
 pub mod parts;
 mod pmesh;
 mod prefix;
 mod seeds;
 
-pub use manifest::manifest;
-pub use prefix::{PrefixRow, prefix_rows};
+pub use prefix::{PrefixRow, prefix_rows, table};
 
 use ivg_wire::{Code, Rule, Verdict};
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Which format a vector is in.
@@ -85,6 +84,18 @@ pub fn vectors() -> Vec<Vector> {
     vectors
 }
 
+/// What the records of an accepted `.ivg` file are called, and where they lie.
+#[must_use]
+pub(crate) fn ivg_records(file: &[u8]) -> Vec<(String, Range<usize>)> {
+    ivg::records(file)
+}
+
+/// What the records of an accepted `.pmesh` file are called, and where they lie.
+#[must_use]
+pub(crate) fn pmesh_records(file: &[u8]) -> Vec<(String, Range<usize>)> {
+    pmesh::records(file)
+}
+
 /// Everything that the generator writes: paths relative to the workspace, and contents.
 #[must_use]
 pub fn generated_files() -> Vec<(PathBuf, Vec<u8>)> {
@@ -92,10 +103,9 @@ pub fn generated_files() -> Vec<(PathBuf, Vec<u8>)> {
     let vectors = vectors();
     let mut files: Vec<(PathBuf, Vec<u8>)> =
         vectors.iter().map(|vector| (folder.join(vector.file()), vector.bytes.clone())).collect();
-    files.push((folder.join("manifest.json"), manifest(&vectors).into_bytes()));
-    for (name, table) in prefix::tables(&vectors) {
-        files.push((folder.join("prefix").join(name), table.into_bytes()));
-    }
+    let (manifest, expected) = crate::suite::generate(&vectors);
+    files.push((folder.join("manifest.json"), manifest.into_bytes()));
+    files.extend(expected.into_iter().map(|(path, bytes)| (folder.join(path), bytes)));
     files.extend(
         seeds::seeds(&vectors)
             .into_iter()

@@ -50,9 +50,15 @@ pub fn in_envelope(file: &[u8], envelope: Range<usize>, at: usize, bytes: &[u8])
 /// Puts a chunk behind those that are there, and moves what follows.
 #[must_use]
 pub fn with_chunk(file: &[u8], kind: &[u8; 4], critical: bool, payload: &[u8]) -> Vec<u8> {
+    inserted(file, read_u64(file, DATA_OFFSET_AT), &chunk(file, kind, critical, payload))
+}
+
+/// A chunk as it may stand in this file.
+#[must_use]
+pub fn chunk(file: &[u8], kind: &[u8; 4], critical: bool, payload: &[u8]) -> Vec<u8> {
     let mut chunk = Vec::new();
     write_chunk(&mut chunk, ChunkKind(*kind), critical, payload, content_id(file));
-    inserted(file, read_u64(file, DATA_OFFSET_AT), &chunk)
+    chunk
 }
 
 /// Where the chunk that was put in last lies.

@@ -9,6 +9,9 @@ use ivg_format::{
 use ivg_wire::splitmix64;
 use std::ops::Range;
 
+mod forward;
+pub(super) mod limits;
+mod orders;
 mod refused;
 mod variants;
 
@@ -40,12 +43,11 @@ const CHUNK_HEAD: usize = 16;
 
 const VALIDITY: &str = "0005-validity";
 
-/// Those that have a prefix table.
-pub(super) const PREFIX_VECTORS: [&str; 2] = [VALIDITY, variants::EXPLICIT_SMALL];
-
 pub(super) fn vectors() -> Vec<Vector> {
     let mut vectors = accepted();
     vectors.extend(variants::accepted());
+    vectors.extend(forward::accepted(&vectors));
+    vectors.extend(orders::accepted());
     let refused = refused::refused(&vectors);
     vectors.extend(refused);
     vectors
@@ -179,9 +181,14 @@ fn header(file: &[u8]) -> Header {
     }
 }
 
-/// Where each record ends, the end record left out.
-pub(super) fn record_ends(file: &[u8]) -> Vec<usize> {
+/// What the records are called, and where they lie.
+pub(super) fn records(file: &[u8]) -> Vec<(String, Range<usize>)> {
     let header = header(file);
-    let records = header.records().filter(|&id| id != RecordId::End);
-    records.map(|id| header.record_range(id).end as usize).collect()
+    let name = |id| match id {
+        RecordId::Corners => "corners".to_owned(),
+        RecordId::Validity(j) => format!("validity {j}"),
+        RecordId::Bundle(k) => format!("bundle {k}"),
+        RecordId::End => "end".to_owned(),
+    };
+    header.records().map(|id| (name(id), range(file, id))).collect()
 }

@@ -6,6 +6,7 @@ use pmesh_format::{EncodeOptions, Header, Limits, ProgressiveMesh, Step, Wedges,
 use std::ops::Range;
 
 mod dictated;
+mod forward;
 mod refused;
 mod refused_coded;
 mod refused_frame;
@@ -53,12 +54,11 @@ const EQUAL_PACKETS: &str = "0009-equal-packets";
 const OCTAHEDRON: &str = "0003-octahedron";
 const ONE_PACKET: &str = "0004-one-packet";
 const SEAM: &str = "0005-seam";
-/// Vectors with a table of what is known after how many bytes.
-pub(super) const PREFIX_VECTORS: [&str; 3] = [OCTAHEDRON, "0011-raw-attributes", "0035-coded-q14"];
 
 pub(super) fn vectors() -> Vec<Vector> {
     let mut vectors = accepted();
     vectors.extend(variants::accepted());
+    vectors.extend(forward::accepted(&vectors));
     let refused = refused::refused(&vectors);
     vectors.extend(refused);
     vectors
@@ -188,7 +188,12 @@ fn header(file: &[u8]) -> Header {
     }
 }
 
-/// Where each packet ends.
-pub(super) fn record_ends(file: &[u8]) -> Vec<usize> {
-    header(file).packets.iter().map(|entry| entry.bytes.end as usize).collect()
+/// What the records are called, and where they lie.
+pub(super) fn records(file: &[u8]) -> Vec<(String, Range<usize>)> {
+    let header = header(file);
+    let mut records: Vec<_> =
+        (0..header.packet_count()).map(|k| (format!("packet {k}"), packet(file, k))).collect();
+    let end = header.end_range();
+    records.push(("end".to_owned(), end.start as usize..end.end as usize));
+    records
 }

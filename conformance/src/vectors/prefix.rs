@@ -3,7 +3,6 @@
 
 use super::{Format, Vector, ivg, pmesh};
 use ivg_wire::Verdict;
-use std::fmt::Write;
 
 /// What is known after so many bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,37 +17,34 @@ pub struct PrefixRow {
     pub records: usize,
 }
 
-/// The table of a vector, from no bytes to all; `None` for a vector that has none.
+/// The table of an accepted vector, from no bytes to all.
 #[must_use]
-pub fn prefix_rows(vector: &Vector) -> Option<Vec<PrefixRow>> {
-    let ends = match vector.format {
-        Format::Ivg if ivg::PREFIX_VECTORS.contains(&vector.name.as_str()) => ivg::record_ends(&vector.bytes),
-        Format::Pmesh if pmesh::PREFIX_VECTORS.contains(&vector.name.as_str()) => {
-            pmesh::record_ends(&vector.bytes)
-        }
-        _ => return None,
+pub fn prefix_rows(vector: &Vector) -> Vec<PrefixRow> {
+    let mut records = match vector.format {
+        Format::Ivg => ivg::records(&vector.bytes),
+        Format::Pmesh => pmesh::records(&vector.bytes),
     };
+    // The end record is not counted.
+    records.pop();
+    let ends = records.into_iter().map(|(_, range)| range.end);
     let length = vector.bytes.len();
     let mut rows = Vec::new();
     let mut from = 0;
-    for (records, end) in ends.into_iter().enumerate() {
+    for (records, end) in ends.enumerate() {
         rows.push(PrefixRow { from, to: end - 1, verdict: Verdict::NeedMore, records });
         from = end;
     }
     let records = rows.len();
     rows.push(PrefixRow { from, to: length - 1, verdict: Verdict::NeedMore, records });
     rows.push(PrefixRow { from: length, to: length, verdict: Verdict::Ok, records });
-    Some(rows)
+    rows
 }
 
-/// Names and texts of all tables: columns separated by tabs.
-pub(super) fn tables(vectors: &[Vector]) -> Vec<(String, String)> {
-    let table = |vector: &Vector| {
-        let mut text = "from\tto\tverdict\trecords\n".to_owned();
-        for PrefixRow { from, to, verdict, records } in prefix_rows(vector)? {
-            writeln!(text, "{from}\t{to}\t{verdict}\t{records}").expect("a string takes everything");
-        }
-        Some((format!("{}-{}.tsv", vector.format.name(), vector.name), text))
-    };
-    vectors.iter().filter_map(table).collect()
+/// A table as text: columns separated by tabs.
+#[must_use]
+pub fn table(rows: &[PrefixRow]) -> String {
+    let lines = rows
+        .iter()
+        .map(|PrefixRow { from, to, verdict, records }| format!("{from}\t{to}\t{verdict}\t{records}\n"));
+    "from\tto\tverdict\trecords\n".to_owned() + &lines.collect::<String>()
 }

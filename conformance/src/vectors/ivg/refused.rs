@@ -1,8 +1,8 @@
 //! Files of `.ivg` to refuse.
 
 use super::super::edit::{
-    DATA_OFFSET_AT, FILE_BYTES_AT, HEADER_BYTES_AT, flipped, in_envelope, in_header, inserted, last_chunk,
-    overwritten, read_u64, with_chunk,
+    DATA_OFFSET_AT, FILE_BYTES_AT, HEADER_BYTES_AT, flipped, in_envelope, in_header, last_chunk, overwritten,
+    read_u64, with_chunk,
 };
 use super::super::{Format, Refused, Vector};
 use super::{CHUNK_HEAD, RECORD_HEAD, VALIDITY, at, header, light, range, variants};
@@ -17,7 +17,8 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     list.extend(registries(twin("0008-small")));
     list.extend(values(twin("0008-small"), twin("0004-vectors"), twin("0005-validity")));
     list.extend(chunks(twin("0006-lights"), twin("0009-metadata")));
-    list.extend(limits(twin("0008-small"), twin("0009-metadata")));
+    list.extend(super::limits::refused(twin("0008-small"), twin("0009-metadata")));
+    list.extend(super::forward::refused(twin("0008-small")));
     list.extend(variants::refused(
         twin(variants::HARMONICS),
         twin(variants::OCTREE),
@@ -34,7 +35,7 @@ fn container(small: &[u8], meta: &[u8]) -> Vec<Refused> {
     };
     let mangled = [&small[..4], &small[5..]].concat();
     vec![
-        (s, "signature", wire::MAGIC, overwritten(small, 1, b"J"), "another format's signature"),
+        (s, "signature", wire::MAGIC, in_header(small, 1, b"J"), "another format's signature"),
         (s, "line-ends", wire::MAGIC, mangled, "the signature after a transfer as text: CR LF became LF"),
         (s, "major", wire::MAJOR_VERSION, in_header(small, at::MAJOR, &[1]), "another major version"),
         (
@@ -48,7 +49,7 @@ fn container(small: &[u8], meta: &[u8]) -> Vec<Refused> {
             s,
             "header-bytes",
             wire::HEADER_BYTES,
-            overwritten(small, HEADER_BYTES_AT, &[152]),
+            in_header(small, HEADER_BYTES_AT, &[152]),
             "a header length of another version",
         ),
         (
@@ -217,18 +218,10 @@ fn lattices(small: &[u8], one: &[u8]) -> Vec<Refused> {
             s,
             "record-huge",
             ivg::RECORD_TOO_LARGE,
-            huge(small, u16::MAX, u32::MAX),
+            super::limits::huge(small, u16::MAX, u32::MAX),
             "a bundle of 12 TB, in a file of a few hundred bytes",
         ),
     ]
-}
-
-/// A header that declares a cube of `side`³ vertices with a share of `per_slice`.
-fn huge(small: &[u8], side: u16, per_slice: u32) -> Vec<u8> {
-    let bundles = (u64::from(side) * u64::from(side)).div_ceil(u64::from(per_slice));
-    let file = overwritten(small, at::DIMS, &[side.to_le_bytes(); 3].concat());
-    let file = overwritten(&file, at::VERTICES_PER_SLICE, &per_slice.to_le_bytes());
-    in_header(&file, at::BUNDLE_COUNT, &u32::try_from(bundles).expect("32 bits").to_le_bytes())
 }
 
 fn registries(small: &[u8]) -> Vec<Refused> {
@@ -304,48 +297,4 @@ fn chunks(lights: &[u8], meta: &[u8]) -> Vec<Refused> {
         (l, "light-name", ivg::LIGHTS, light(8, &[0xFF]), "a name that is not UTF-8"),
         (l, "light-flags", wire::RESERVED, light(4, &[2]), "a reserved flag of a light"),
     ]
-}
-
-fn limits(small: &[u8], meta: &[u8]) -> Vec<Refused> {
-    let (s, m) = ("0008-small", "0009-metadata");
-    let long_header =
-        overwritten(&in_header(small, at::MINOR, &[9]), HEADER_BYTES_AT, &8192u32.to_le_bytes());
-    let mut many_chunks = small.to_vec();
-    let chunk = &with_chunk(small, b"MANY", false, b"")[at::END..at::END + 24];
-    many_chunks = inserted(&many_chunks, at::END, &chunk.repeat(1025));
-    vec![
-        (s, "header", wire::LIMIT_HEADER_BYTES, long_header[..32].to_vec(), "a header of 8 KiB"),
-        (
-            m,
-            "chunk",
-            wire::LIMIT_CHUNK_BYTES,
-            long_chunk(meta),
-            "a chunk of 4 MiB, of which the first bytes are there",
-        ),
-        (s, "chunks", wire::LIMIT_CHUNKS, many_chunks, "1025 chunks"),
-        (s, "record", wire::LIMIT_RECORD_BYTES, declared(small, 500, 4096), "bundles of 82 MiB"),
-        (
-            s,
-            "vertices",
-            ivg::LIMIT_VERTICES,
-            declared(small, u16::MAX, 64),
-            "281,462,092,005,375 vertices in 144 bytes",
-        ),
-    ]
-}
-
-/// The header alone, with a lattice of `side`³ vertices.
-fn declared(small: &[u8], side: u16, per_slice: u32) -> Vec<u8> {
-    let mut file = huge(small, side, per_slice);
-    file.truncate(at::END);
-    file
-}
-
-fn long_chunk(meta: &[u8]) -> Vec<u8> {
-    let extra = 4 << 20;
-    let mut file = meta[..at::END + CHUNK_HEAD].to_vec();
-    for field in [DATA_OFFSET_AT, FILE_BYTES_AT] {
-        file = in_header(&file, field, &((read_u64(&file, field) + extra) as u64).to_le_bytes());
-    }
-    overwritten(&file, at::END + 8, &(extra as u64).to_le_bytes())
 }

@@ -20,6 +20,7 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     let mut list = frame::container(octahedron);
     list.extend(frame::records(twin(EQUAL_PACKETS)));
     list.extend(frame::headers(octahedron));
+    list.extend(super::forward::refused(octahedron));
     list.extend(frame::counts(twin(EMPTY), twin(SEAM)));
     list.extend(directory(octahedron));
     list.extend(names(twin(SEAM)));
@@ -113,13 +114,6 @@ fn directory(file: &[u8]) -> Vec<Refused> {
             mesh::DIRECTORY_BYTES,
             number(0, entry::PAYLOAD_BYTES, u32::MAX),
             "a packet longer than a record may be",
-        ),
-        (
-            o,
-            "entry-bytes-limit",
-            wire::LIMIT_RECORD_BYTES,
-            number(0, entry::PAYLOAD_BYTES, 1 << 30),
-            "a packet of 1 GiB",
         ),
         (o, "entry-error-nan", mesh::DIRECTORY_ERROR, error(0, f32::NAN), "an error that is no number"),
         (o, "entry-error-negative", mesh::DIRECTORY_ERROR, error(packets - 1, -1.0), "a negative error"),
