@@ -283,7 +283,7 @@ export class FrameDecoder {
   }
 
   #judgePadding(item, from, name, base = this.#base) {
-    for (let at = from; at < item.length - 4; at += 1) if (item[at] !== 0) refuse(name, base + at);
+    for (let at = from; at < item.length - 4; at += 1) if (item[at] !== 0) refuse(name, base + from);
   }
 
   #advanceRecord(item) {
