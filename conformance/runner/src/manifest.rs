@@ -105,6 +105,24 @@ pub enum Kind {
     Levels,
 }
 
+impl Kind {
+    /// Its name in the manifest.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Positive => "positive",
+            Self::Negative => "negative",
+            Self::Prefix => "prefix",
+            Self::Chunked => "chunked",
+            Self::Limits => "limits",
+            Self::Forward => "forward",
+            Self::Numeric => "numeric",
+            Self::Order => "order",
+            Self::Levels => "levels",
+        }
+    }
+}
+
 /// A command of PROTOCOL.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -317,7 +335,21 @@ pub struct Suite {
     pub manifest: Manifest,
 }
 
+/// Where the suite lies from the working folder on, unless a user says otherwise: in the repository, in its archive.
+const PLACES: [&str; 2] = ["conformance/vectors", "vectors"];
+
 impl Suite {
+    /// Opens the suite that a user names, or the one that lies near the working folder.
+    ///
+    /// # Errors
+    ///
+    /// There is none; or those of [`Suite::open`].
+    pub fn find(named: Option<&Path>) -> Result<Self, String> {
+        let near = || PLACES.map(Path::new).into_iter().find(|folder| folder.join("manifest.json").exists());
+        let folder = named.or_else(near).ok_or("no suite here: name its folder of vectors with --suite")?;
+        Self::open(folder)
+    }
+
     /// Reads the manifest in a folder.
     ///
     /// # Errors

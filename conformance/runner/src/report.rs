@@ -1,6 +1,8 @@
 //! How a run went: as text, JSON, JUnit.
 
+use crate::manifest::Suite;
 use crate::run::{Answer, Results, Status};
+use crate::words;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -43,6 +45,18 @@ pub fn text(results: &Results) -> String {
     }
     text += &format!("{}, in {:.1} s\n", results.decoder, results.took.as_secs_f64());
     text
+}
+
+/// The tests that fit a pattern: id, kind, verdict and code, what it shows; with tabs between.
+#[must_use]
+pub fn list(suite: &Suite, only: Option<&str>) -> String {
+    let tests = suite.manifest.tests.iter();
+    let chosen = tests.filter(|test| only.is_none_or(|pattern| words::fits(pattern, &test.id)));
+    let line = |test: &crate::manifest::Test| {
+        let code = test.code.map_or(String::new(), |code| format!(" {code}"));
+        format!("{}\t{}\t{}{code}\t{}\n", test.id, test.kind.name(), test.verdict.name(), test.why)
+    };
+    chosen.map(line).collect()
 }
 
 #[derive(Serialize)]

@@ -57,5 +57,12 @@ pub fn fits(pattern: &str, id: &str) -> bool {
     left.ends_with(last)
 }
 
+/// The patterns in a list of tests to skip: one a line; what follows `#` is a remark.
+#[must_use]
+pub fn patterns(text: &str) -> Vec<String> {
+    let lines = text.lines().map(|line| line.split('#').next().unwrap_or("").trim());
+    lines.filter(|line| !line.is_empty()).map(str::to_owned).collect()
+}
+
 #[cfg(test)]
 mod tests;

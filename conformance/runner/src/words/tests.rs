@@ -1,4 +1,4 @@
-use super::{fits, split};
+use super::{fits, patterns, split};
 
 #[test]
 fn commands_are_split_as_a_shell_would() {
@@ -25,4 +25,9 @@ fn a_pattern_is_a_part_of_an_id_or_has_stars() {
     for pattern in ["0006", "pmesh/*", "*prefix", "ivg/*/chunks-*", "*144*144"] {
         assert!(!fits(pattern, id), "{pattern}");
     }
+}
+
+#[test]
+fn lists_to_skip_have_remarks() {
+    assert_eq!(patterns("# all\nivg/*  # later\n\n numeric \n"), ["ivg/*", "numeric"]);
 }
