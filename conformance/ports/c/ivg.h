@@ -302,12 +302,11 @@ static inline uint32_t frame_checksum(uint64_t content_id, const uint8_t *bytes,
     return frame_crc32(frame_crc32(0, id, 8), bytes, length);
 }
 
-/* The offset of the first byte that is not 0, or `length`. */
-static inline uint64_t frame_first_not_zero(const uint8_t *bytes, uint64_t length)
+static inline int frame_all_zero(const uint8_t *bytes, uint64_t length)
 {
     uint64_t i = 0;
     while (i < length && bytes[i] == 0) i++;
-    return i;
+    return i == length;
 }
 
 /* ---- Header (common.md, section 4) ---- */
@@ -377,7 +376,7 @@ static inline frame_result frame_read_chunk(const uint8_t *bytes, uint64_t lengt
     const frame_limits *limits, uint64_t position, uint32_t number, frame_chunk *chunk)
 {
     uint64_t space = header->data_offset - position;
-    uint64_t padding, at;
+    uint64_t padding;
     const uint8_t *start;
     if (number >= FRAME_CHUNKS_MAXIMUM) return frame_error(FRAME_CHUNK_COUNT, position);
     if (number >= limits->chunks) return frame_error(FRAME_LIMIT_CHUNKS, position);
@@ -402,8 +401,9 @@ static inline frame_result frame_read_chunk(const uint8_t *bytes, uint64_t lengt
         return frame_error(FRAME_RESERVED, position + 4); /* COM-CHK-01 */
     }
     padding = chunk->total - FRAME_CHUNK_ENVELOPE - chunk->payload_bytes;
-    at = frame_first_not_zero(start + 16 + chunk->payload_bytes, padding);
-    if (at < padding) return frame_error(FRAME_CHUNK_PADDING, position + 16 + chunk->payload_bytes + at);
+    if (!frame_all_zero(start + 16 + chunk->payload_bytes, padding)) {
+        return frame_error(FRAME_CHUNK_PADDING, position + 16 + chunk->payload_bytes);
+    }
     chunk->payload = start + 16;
     chunk->payload_offset = position + 16;
     return frame_ok();
@@ -434,13 +434,13 @@ static inline frame_result frame_read_record(const uint8_t *record, uint64_t off
 {
     uint64_t total = frame_record_bytes(payload_bytes);
     uint64_t padding = total - FRAME_RECORD_ENVELOPE - payload_bytes;
-    uint64_t at;
     if (frame_checksum(content_id, record, total - 4) != frame_u32(record + total - 4)) {
         return frame_error(FRAME_RECORD_CHECKSUM, offset + total - 4);
     }
     if (frame_u32(record) != id) return frame_error(FRAME_RECORD_ID, offset);
-    at = frame_first_not_zero(record + 8 + payload_bytes, padding);
-    if (at < padding) return frame_error(FRAME_RECORD_PADDING, offset + 8 + payload_bytes + at);
+    if (!frame_all_zero(record + 8 + payload_bytes, padding)) {
+        return frame_error(FRAME_RECORD_PADDING, offset + 8 + payload_bytes);
+    }
     return frame_ok();
 }
 
