@@ -152,6 +152,7 @@ export class IvgDecoder extends FrameDecoder {
     if (!explicit && type === 'DIRE') refuse('DIRECTORY_FORBIDDEN', offset);
   }
 
+  /** Judges and takes in a chunk of a known type. */
   takeChunk(type, payload, offset) {
     if (type === 'LITE') {
       judgeLights(payload, offset);
@@ -267,6 +268,7 @@ export class IvgDecoder extends FrameDecoder {
     return this.readAlone(id, Number(this.#offsetOf(place)), payloadBytes, bytes);
   }
 
+  /** Judges the payload of a record. */
   takeRecord(id, generation, payload, offset) {
     if (id >= FIRST_VALIDITY_ID) {
       const event = new ValidityEvent(this.#specific, id, generation, payload);

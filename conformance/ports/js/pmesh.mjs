@@ -58,6 +58,7 @@ export class PmeshDecoder extends FrameDecoder {
   #specific = null;
   #directory = null;
   #packets = null;
+  #failed = null;
 
   /**
    * @param {{headerBytes?: number, chunkBytes?: number, chunks?: number, recordBytes?: number, counts?: number}}
@@ -148,6 +149,7 @@ export class PmeshDecoder extends FrameDecoder {
     if (index === 0 && type !== 'PDIR') refuse('DIRECTORY_MISSING', offset);
   }
 
+  /** Judges and takes in a chunk of a known type. */
   takeChunk(type, payload, offset) {
     if (type === 'MTRL') {
       judgeNames(payload, offset);
@@ -217,17 +219,50 @@ export class PmeshDecoder extends FrameDecoder {
     return entryOf(this.#directory, packet);
   }
 
+  /** A record by its place in the file: its id, and the length of its payload. */
   recordAt(packet) {
     return { id: packet, payloadBytes: this.packet(packet).payloadBytes };
   }
 
+  /** Judges a packet and takes it in. */
   takeRecord(id, generation, payload, offset) {
     if (generation !== 0) refuse('RESERVED', offset - 4);
-    if (id !== this.mesh.packets) refuse('PACKET_ORDER', offset - 8);
+    if (this.#failed !== null) throw this.#failed;
     const before = id === 0 ? { endVertex: 0, endWedge: 0, endFace: 0 } : this.packet(id - 1);
     const entry = this.packet(id);
-    this.mesh.append(this.#packets.read(id, before, entry, payload, offset));
+    try {
+      this.mesh.append(this.#packets.read(id, before, entry, payload, offset));
+    } catch (error) {
+      this.#failed = error;
+      throw error;
+    }
     return { kind: 'packet', packet: id, level: entry.endVertex };
+  }
+
+  /**
+   * Where a packet lies, to fetch it by a range; once the header is known.
+   * @param {number} packet number of a packet
+   * @returns {{offset: number, bytes: number}} its first byte and its length
+   */
+  rangeOf(packet) {
+    let offset = this.header.dataOffset;
+    for (let before = 0; before < packet; before += 1) offset += recordLength(this.packet(before).payloadBytes);
+    return { offset, bytes: recordLength(this.packet(packet).payloadBytes) };
+  }
+
+  /**
+   * Reads a packet that was fetched alone (COM-REC-06), instead of pushing what lies behind `header.dataOffset`. Packets
+   * are read in order (PMESH-LVL-04).
+   * @param {number} packet number of the packet
+   * @param {Uint8Array} bytes the record
+   * @returns {{kind: 'packet', packet: number, level: number}} its event
+   * @throws {FormatError} as inside the file; PACKET_ORDER if it is not the next; TRUNCATED or RECORD_LENGTH if the bytes
+   *   are not those of one record. A packet whose payload is refused ends the mesh; levels before it stay.
+   */
+  readRecord(packet, bytes) {
+    const { offset } = this.rangeOf(packet);
+    if (packet !== this.mesh.packets) refuse('PACKET_ORDER', offset);
+    return this.readAlone(packet, offset, this.packet(packet).payloadBytes, bytes);
   }
 }
 
