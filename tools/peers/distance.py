@@ -16,7 +16,8 @@ from typing import Any, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from meshes import Mesh, PeersError, write
+from commands import PeersError
+from meshes import Mesh, write
 
 # A level of fewer faces is not looked for as the worst one: a closed surface ends as two opposite triangles.
 MANY_FACES = 100

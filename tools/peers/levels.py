@@ -6,9 +6,9 @@ from pathlib import Path
 
 import distance
 import meshes
-from meshes import PeersError
-from project import Programs, progress
-from report import markdown
+from commands import PeersError, progress
+from project import Programs
+from tables import markdown
 
 COUNT = 200
 SEED = 1

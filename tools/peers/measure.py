@@ -15,8 +15,9 @@ import numpy as np
 
 import distance
 import meshes
-from meshes import Mesh, PeersError
-from project import Figures, Programs, progress
+from commands import PeersError, progress
+from meshes import Mesh
+from project import Figures, Programs
 
 # Positions of so many bits along the longest side; Draco's rule, the same for all.
 BITS = (12, 14)

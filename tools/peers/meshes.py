@@ -11,15 +11,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from commands import PeersError
+
 Points = NDArray[np.float32]
 Triangles = NDArray[np.uint32]
 
 COMMON = "https://github.com/alecjacobson/common-3d-test-models"
 STANFORD = "https://graphics.stanford.edu/data/3Dscanrep/"
-
-
-class PeersError(Exception):
-    """What is wrong and what to do about it."""
 
 
 @dataclass(frozen=True)

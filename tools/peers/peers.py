@@ -12,8 +12,8 @@ import sys
 from pathlib import Path
 
 import meshes
-from meshes import PeersError
-from project import Programs, progress
+from commands import PeersError, progress
+from project import Programs
 
 PACKAGES = ("DracoPy", "pymeshlab", "fast_simplification", "numpy")
 CRATES = ("meshopt", "zstd", "zstd-sys")

@@ -8,8 +8,9 @@ from PIL import Image, ImageDraw, ImageFont
 
 import distance
 import meshes
+from commands import progress
 from meshes import Mesh
-from project import Programs, progress
+from project import Programs
 
 # Shares of the faces [%].
 SHARES = (0.2, 1.0)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import resource
-import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from meshes import PeersError
+from commands import called, run
 
 Figures = dict[str, Any]
 
@@ -57,22 +54,3 @@ def _processor_seconds() -> float:
     """Processor time of all commands that have ended."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
-
-
-def run(*words: object) -> str:
-    """Standard output of a command that must succeed."""
-    command = [str(word) for word in words]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise PeersError(f"`{' '.join(command)}` ended with {done.returncode}: {done.stderr.strip()}")
-    return done.stdout
-
-
-def called(*words: object) -> Any:
-    """The JSON that a command prints."""
-    return json.loads(run(*words))
-
-
-def progress(text: str) -> None:
-    """A line on standard error, so that standard output holds results alone."""
-    print(text, file=sys.stderr, flush=True)

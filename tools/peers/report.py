@@ -10,6 +10,7 @@ from typing import Any
 
 from measure import BITS, DRACO_LEVEL, OTHERS, RAW_PACKETS, SHARES, Effort
 from project import Figures
+from tables import markdown
 
 MESHOPT = "meshopt strip + zstd -19"
 OTHERS_NOTE = " The last columns are means of tools that drop components, cluster, or move vertices, with the faces reached."
@@ -80,23 +81,6 @@ class Gap(dict[str, Any]):
 
 def _with_gaps(forms: dict[str, Figures | None]) -> dict[str, Figures]:
     return {form: found or Gap() for form, found in forms.items()}
-
-
-def markdown(columns: list[str], rows: list[list[str]]) -> str:
-    """A table whose columns are aligned, the first to the left."""
-    widths = [max(len(row[k]) for row in [columns, *rows]) for k in range(len(columns))]
-
-    def line(cells: list[str]) -> str:
-        padded = [
-            cell.ljust(width) if k == 0 else cell.rjust(width)
-            for k, (cell, width) in enumerate(zip(cells, widths))
-        ]
-        return f"| {' | '.join(padded)} |"
-
-    rule = "|".join(
-        "-" * (width + 2) if k == 0 else "-" * (width + 1) + ":" for k, width in enumerate(widths)
-    )
-    return "\n".join([line(columns), f"|{rule}|", *map(line, rows)])
 
 
 class Report:

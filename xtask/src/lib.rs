@@ -4,6 +4,7 @@
 //! cargo xtask test --install     everything that CI runs
 //! cargo xtask tidy               file lengths, left-over markers, README and CI agree
 //! cargo xtask peers mesh --meshes FOLDER     progressive meshes beside meshoptimizer and Draco
+//! cargo xtask peers bake --meshes FOLDER     baked light beside Mitsuba 3 and Embree
 //! ```
 //!
 //! [`steps`] is the list of what the suite does, in order; [`runner`] runs such a list and stops at the first failure;

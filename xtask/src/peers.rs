@@ -1,5 +1,6 @@
-//! Progressive meshes beside the tools that a user would pick instead. The measuring lies in `tools/peers`, a Rust program in
-//! a workspace of its own and Python files; here it is built, its peers are installed, and it is called.
+//! Progressive meshes and baked light beside the tools that a user would pick instead. The measuring lies in `tools/peers`,
+//! Rust programs in a workspace of its own and Python files, and in examples of our crates; here they are built, their peers are
+//! installed, and they are called.
 
 use crate::invocation::Invocation;
 use crate::runner::{Action, Step};
@@ -13,6 +14,12 @@ const FOLDER: &str = "tools/peers";
 /// Where results, the peers from PyPI and the measuring programs go unless something else is asked for.
 pub const OUT: &str = "target/peers";
 
+/// The examples that measure baked light.
+const EXAMPLES: [&str; 2] = [
+    "build --locked --release --package ivg-bake --features rays --example oracle_error --example near_surfaces --example rays",
+    "build --locked --release --package ivg-scene --example replace",
+];
+
 /// What is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Comparison {
@@ -22,6 +29,8 @@ pub enum Comparison {
     Picture,
     /// Random levels of our files: are they valid?
     Levels,
+    /// Error, time, rays, threads and memory of baked light as tables.
+    Bake,
 }
 
 impl Comparison {
@@ -30,6 +39,7 @@ impl Comparison {
             Self::Mesh => "mesh",
             Self::Picture => "picture",
             Self::Levels => "levels",
+            Self::Bake => "bake",
         }
     }
 }
@@ -41,7 +51,7 @@ pub struct Request {
     pub what: Comparison,
     /// The folder with the meshes.
     pub meshes: PathBuf,
-    /// If not empty: these meshes only.
+    /// If not empty: these meshes only, or rows of baked light.
     pub only: Vec<String>,
     /// Fewer repetitions and samples.
     pub quick: bool,
@@ -56,9 +66,14 @@ pub fn steps(root: &Path, request: &Request) -> Vec<Step> {
     let environment = root.join(OUT).join("venv");
     let python = environment.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     let python = python.to_string_lossy();
-    let mut measure = Invocation::new(&python, "-B")
-        .argument(format!("{FOLDER}/peers.py"))
-        .argument(request.what.name())
+    let light = request.what == Comparison::Bake;
+    let measure = Invocation::new(&python, "-B");
+    let measure = if light {
+        measure.argument(format!("{FOLDER}/bake.py"))
+    } else {
+        measure.argument(format!("{FOLDER}/peers.py")).argument(request.what.name())
+    };
+    let mut measure = measure
         .argument("--meshes")
         .argument(request.meshes.to_string_lossy())
         .argument("--out")
@@ -73,24 +88,22 @@ pub fn steps(root: &Path, request: &Request) -> Vec<Step> {
     if request.quick {
         measure = measure.argument("--quick");
     }
-    let install =
-        Invocation::new(&python, "-m pip install --quiet --disable-pip-version-check --requirement")
-            .argument(format!("{FOLDER}/requirements.txt"));
+    let mut builds = vec![Invocation::cargo("build --locked --release --package ivg-cli")];
+    let mut installs = vec![Invocation::new("python3", "-m venv").argument(environment.to_string_lossy())];
+    if light {
+        builds.extend(EXAMPLES.map(Invocation::cargo));
+        // `bake.py` installs its peers itself: one that cannot be had costs its rows alone.
+    } else {
+        installs.push(
+            Invocation::new(&python, "-m pip install --quiet --disable-pip-version-check --requirement")
+                .argument(format!("{FOLDER}/requirements.txt")),
+        );
+    }
+    builds.push(in_own_workspace(root, "build --release"));
+    let run = |commands: Vec<Invocation>| commands.into_iter().map(Action::Run).collect();
     vec![
-        Step {
-            name: "build",
-            actions: vec![
-                Action::Run(Invocation::cargo("build --locked --release --package ivg-cli")),
-                Action::Run(in_own_workspace(root, "build --release")),
-            ],
-        },
-        Step {
-            name: "install peers",
-            actions: vec![
-                Action::Run(Invocation::new("python3", "-m venv").argument(environment.to_string_lossy())),
-                Action::Run(install),
-            ],
-        },
+        Step { name: "build", actions: run(builds) },
+        Step { name: "install peers", actions: run(installs) },
         Step { name: request.what.name(), actions: vec![Action::Run(measure)] },
     ]
 }

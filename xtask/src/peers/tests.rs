@@ -50,6 +50,24 @@ fn what_is_measured_is_passed_on() {
 }
 
 #[test]
+fn baked_light_is_measured_by_examples_and_installs_its_own_peers() {
+    let only = vec!["rays".to_owned()];
+    let listing = listing(&Request { what: Comparison::Bake, only, quick: true, ..request() });
+    let at = |part: &str| listing.find(part).unwrap_or_else(|| panic!("{part} is not in\n{listing}"));
+    let order = [
+        at("--package ivg-cli"),
+        at("--features rays --example oracle_error"),
+        at("--package ivg-scene --example replace"),
+        at("--manifest-path tools/peers/Cargo.toml"),
+        at("python3 -m venv"),
+        at("tools/peers/bake.py --meshes '/some meshes' --out /results --ivg"),
+    ];
+    assert!(order.is_sorted(), "{listing}");
+    assert!(listing.contains("--only rays --quick"), "{listing}");
+    assert!(!listing.contains("pip install"), "{listing}");
+}
+
+#[test]
 fn paths_with_blanks_stay_whole() {
     let listing = listing(&request());
     assert!(listing.contains("'/folder of ours/target/peers/venv/bin/python'"), "{listing}");
