@@ -13,7 +13,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 /// Bytes of the common header; the specific header follows.
 pub const COMMON_HEADER_BYTES: usize = 56;
 
-/// Bytes up to and including the header's checksum: what must be there before its length is known.
+/// Bytes up to and including the header's checksum: what is asked for first.
 const PREFIX_BYTES: usize = 32;
 
 /// Which format and which version of it a reader understands or a writer writes.
@@ -96,11 +96,12 @@ impl CommonHeader {
             }
             _ => {}
         }
-        let Ok((wire, _)) = Prefix::ref_from_prefix(input) else {
+        let length_at = offset_of!(Wire, header_bytes);
+        let prefix = field(input, offset_of!(Wire, minor)).zip(field(input, length_at));
+        let Some((minor, header_bytes)) = prefix else {
             return Ok(Step::NeedMore(PREFIX_BYTES.saturating_sub(input.len())));
         };
-        let (minor, header_bytes) = (wire.minor.get(), wire.header_bytes.get());
-        let length_at = offset_of!(Wire, header_bytes);
+        let (minor, header_bytes) = (u16::from_le_bytes(minor), u32::from_le_bytes(header_bytes));
         // A newer minor version may have appended fields; one that is known has exactly its length.
         let known = minor <= format.minor;
         let fits =
@@ -115,10 +116,10 @@ impl CommonHeader {
         let Some(header) = input.get(..length) else {
             return Ok(Step::NeedMore(length.saturating_sub(input.len())));
         };
-        compare(codes::HEADER_CHECKSUM, wire.header_crc.get(), header_crc(header), at(CRC_AT), Part::Header)?;
         let Ok((wire, _)) = Wire::ref_from_prefix(header) else {
             return fail(codes::HEADER_BYTES, length_at);
         };
+        compare(codes::HEADER_CHECKSUM, wire.header_crc.get(), header_crc(header), at(CRC_AT), Part::Header)?;
         if wire.reserved.get() != 0 {
             return fail(codes::RESERVED, offset_of!(Wire, reserved));
         }
@@ -187,25 +188,6 @@ pub fn seal_header(header: &mut [u8]) {
         place.copy_from_slice(&crc.to_le_bytes());
     }
 }
-
-/// The first 32 bytes.
-#[derive(FromBytes, KnownLayout, Immutable, Unaligned)]
-#[repr(C)]
-struct Prefix {
-    before_minor: [u8; 10],
-    minor: U16,
-    features: [u8; 8],
-    header_bytes: U32,
-    reserved: U32,
-    header_crc: U32,
-}
-
-const _: () = assert!(
-    size_of::<Prefix>() == PREFIX_BYTES
-        && offset_of!(Prefix, minor) == offset_of!(Wire, minor)
-        && offset_of!(Prefix, header_bytes) == offset_of!(Wire, header_bytes)
-        && offset_of!(Prefix, header_crc) == CRC_AT
-);
 
 /// CRC-32 over the header without the four bytes of the checksum itself.
 fn header_crc(header: &[u8]) -> u32 {

@@ -45,7 +45,8 @@ fn what_is_written_is_read() {
 fn every_truncation_needs_more() {
     let bytes = sealed(common());
     for n in 0..bytes.len() {
-        let goal = if n < 32 { 32 } else { 64 };
+        // Its length is known after 24 bytes.
+        let goal = if n < 24 { 32 } else { 64 };
         assert_eq!(read(&bytes[..n]), Ok(Step::NeedMore(goal - n)), "{n} bytes");
     }
 }
@@ -77,6 +78,13 @@ fn another_major_version_is_unsupported_once_its_bytes_are_there() {
     assert!(matches!(read(&bytes[..9]), Ok(Step::NeedMore(_))));
     refused(&bytes[..10], codes::MAJOR_VERSION, 8);
     refused(&bytes, codes::MAJOR_VERSION, 8);
+}
+
+#[test]
+fn a_wrong_length_is_refused_once_its_bytes_are_there() {
+    let bytes = sealed(CommonHeader { header_bytes: 72, ..common() });
+    assert!(matches!(read(&bytes[..23]), Ok(Step::NeedMore(_))));
+    refused(&bytes[..24], codes::HEADER_BYTES, 20);
 }
 
 #[test]
