@@ -1,5 +1,6 @@
 //! The command line: names, defaults, units. Nothing here computes.
 
+mod conformance;
 mod grid;
 mod mesh;
 mod registry;
@@ -9,6 +10,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(crate) use self::conformance::{ConformanceArguments, ConformanceCommand, RunArguments};
 pub(crate) use self::grid::{
     BakeSettings, EffectsArgument, EstimatorArgument, FilterArgument, GridStorage, RecodeArguments,
     ReconstructionArgument, SampleArguments,
@@ -59,6 +61,8 @@ pub(crate) enum Command {
     Serve(ServeArguments),
     /// Stream a scene without showing it, and log what arrived when.
     Fetch(FetchArguments),
+    /// Run the conformance suite of .ivg and .pmesh on any decoder.
+    Conformance(ConformanceArguments),
 }
 
 /// A scene and what may be added to it.

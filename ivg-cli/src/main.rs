@@ -70,6 +70,7 @@ fn run(command: Command) -> Result<ExitCode, Failure> {
         Command::Render(arguments) => commands::render::run(&arguments),
         Command::Serve(arguments) => commands::serve::run(&arguments),
         Command::Fetch(arguments) => commands::fetch::run(&arguments),
+        Command::Conformance(arguments) => commands::conformance::run(&arguments),
     }
 }
 
