@@ -76,7 +76,7 @@ enum {
 typedef struct frame_result {
     frame_verdict verdict;
     int code;        /* 0 with FRAME_OK, FRAME_TRUNCATED with FRAME_NEED_MORE */
-    uint64_t offset; /* the byte of the file at fault; with FRAME_NEED_MORE the byte that is missing */
+    uint64_t offset; /* the byte of the file at fault; with FRAME_NEED_MORE, which has none, the first that is missing */
 } frame_result;
 
 /* Limits of both formats (COM-LIM-01). */

@@ -83,7 +83,7 @@ enum {
 typedef struct frame_result {
     frame_verdict verdict;
     int code;        /* 0 with FRAME_OK, FRAME_TRUNCATED with FRAME_NEED_MORE */
-    uint64_t offset; /* the byte of the file at fault; with FRAME_NEED_MORE the byte that is missing */
+    uint64_t offset; /* the byte of the file at fault; with FRAME_NEED_MORE, which has none, the first that is missing */
 } frame_result;
 
 /* Limits of both formats (COM-LIM-01). */
@@ -854,15 +854,13 @@ static frame_result pmesh_read_specific_header(const uint8_t *bytes, const pmesh
         if (!frame_is_finite_f32(header->bounds_max[axis])) return frame_error(PMESH_BOUNDS, 116);
     }
     for (int axis = 0; axis < 3; axis++) {
-        if (header->bounds_min[axis] > header->bounds_max[axis]) return frame_error(PMESH_BOUNDS, 104);
+        if (header->bounds_min[axis] > header->bounds_max[axis]) return frame_error(PMESH_BOUNDS, 116);
     }
     if (frame_u16(bytes + 130) != 0) return frame_error(FRAME_RESERVED, 130);
     if (frame_u32(bytes + 148) != 0) return frame_error(FRAME_RESERVED, 148);
     const frame_result result = pmesh_check_parameters(header);
     if (result.verdict != FRAME_OK) return result;
-    if (v > limits->counts) return frame_error(PMESH_LIMIT_COUNTS, 56);
-    if (w > limits->counts) return frame_error(PMESH_LIMIT_COUNTS, 60);
-    if (f > limits->counts) return frame_error(PMESH_LIMIT_COUNTS, 64);
+    if (v > limits->counts || w > limits->counts || f > limits->counts) return frame_error(PMESH_LIMIT_COUNTS, 56);
     return frame_ok();
 }
 
@@ -1430,7 +1428,7 @@ static frame_result pmesh_raw_positions(pmesh_reader *reader, const pmesh_packet
         for (uint64_t i = 0; i < 3 * v; i++) {
             const float number = frame_f32(part + 4 * i);
             if (!(number >= header->bounds_min[i % 3] && number <= header->bounds_max[i % 3])) { /* NaN is not either */
-                return frame_error(PMESH_POSITION, offset + 4 * i);
+                return frame_error(PMESH_POSITION, offset + 12 * (i / 3));
             }
             positions[i] = number;
         }
@@ -1440,26 +1438,29 @@ static frame_result pmesh_raw_positions(pmesh_reader *reader, const pmesh_packet
     const pmesh_lattice lattice = pmesh_position_lattice(header);
     for (uint64_t i = 0; i < 4 * v; i++) {
         const uint32_t q = frame_u16(part + 2 * i);
-        if (i % 4 == 3 ? q != 0 : q > lattice.greatest[i % 4]) return frame_error(PMESH_POSITION, offset + 2 * i);
+        if (i % 4 == 3 ? q != 0 : q > lattice.greatest[i % 4]) return frame_error(PMESH_POSITION, offset + 8 * (i / 4));
     }
     for (uint64_t i = 0; i < 4 * v; i++) {
         if (i % 4 == 3) continue;
         const float number = pmesh_coordinate(&lattice, (int)(i % 4), frame_u16(part + 2 * i));
-        if (!frame_is_finite_f32(number)) return frame_error(PMESH_POSITION, offset + 2 * i);
+        if (!frame_is_finite_f32(number)) return frame_error(PMESH_POSITION, offset + 8 * (i / 4));
         positions[3 * (i / 4) + i % 4] = number;
     }
     *at += 8 * v;
     return frame_ok();
 }
 
-/* Normals or texture coordinates (PMESH-WDG-02). */
-static frame_result pmesh_raw_values(float *values, uint64_t count, const pmesh_payload *payload, uint64_t *at)
+/* Normals or texture coordinates (PMESH-WDG-02): so many numbers for each of so many wedges. */
+static frame_result pmesh_raw_values(float *values, uint64_t wedges, uint64_t numbers, const pmesh_payload *payload,
+    uint64_t *at)
 {
-    for (uint64_t i = 0; i < count; i++) {
+    for (uint64_t i = 0; i < wedges * numbers; i++) {
         values[i] = frame_f32(payload->bytes + *at + 4 * i);
-        if (!frame_is_finite_f32(values[i])) return frame_error(PMESH_ATTRIBUTE, payload->offset + *at + 4 * i);
+        if (!frame_is_finite_f32(values[i])) {
+            return frame_error(PMESH_ATTRIBUTE, payload->offset + *at + 4 * numbers * (i / numbers));
+        }
     }
-    *at += 4 * count;
+    *at += 4 * wedges * numbers;
     return frame_ok();
 }
 
@@ -1692,10 +1693,10 @@ static frame_result pmesh_take_raw(pmesh_reader *reader, const pmesh_packet *pac
     uint64_t at = 4; /* behind switch_count; the directory has made room for all parts up to parents (PMESH-DIR-04) */
     frame_result result = pmesh_raw_positions(reader, packet, payload, &at);
     if (result.verdict == FRAME_OK && (attributes & PMESH_NORMALS) != 0) {
-        result = pmesh_raw_values(mesh->normals + 3 * (uint64_t)packet->start_wedge, 3 * w, payload, &at);
+        result = pmesh_raw_values(mesh->normals + 3 * (uint64_t)packet->start_wedge, w, 3, payload, &at);
     }
     if (result.verdict == FRAME_OK && (attributes & PMESH_UVS) != 0) {
-        result = pmesh_raw_values(mesh->uvs + 2 * (uint64_t)packet->start_wedge, 2 * w, payload, &at);
+        result = pmesh_raw_values(mesh->uvs + 2 * (uint64_t)packet->start_wedge, w, 2, payload, &at);
     }
     if (result.verdict != FRAME_OK) return result;
     if (attributes & PMESH_COLOURS) {
