@@ -14,7 +14,7 @@ use crate::estimate::track_length::sums_of;
 use crate::region::SUB_CELLS;
 use crate::trace::{BOOKED_BOUNCES, Books};
 
-/// Section 2: the header.
+/// ACC-HDR-01: the header.
 const FORMAT: FormatId = FormatId {
     magic: [0x89, b'I', b'V', b'A', 0x0d, 0x0a, 0x1a, 0x0a],
     major: 0,
@@ -26,16 +26,16 @@ const FORMAT: FormatId = FormatId {
 /// Bytes of the header behind the common one.
 const HEAD_BYTES: usize = 160;
 
-/// Section 4: numbers of a record of sums.
+/// ACC-SUM-03: numbers of a record of sums.
 const SUMS_A_RECORD: usize = 1 << 20;
 
-/// Bytes of a vertex in the record of vertices.
+/// ACC-REC-05: bytes of a vertex in the record of vertices.
 const VERTEX_BYTES: u64 = 14;
 
-/// Bytes of the books: 76 sums of 16 bytes and the flights.
+/// ACC-REC-04: bytes of the books, 76 sums of 16 bytes and the flights.
 const BOOK_BYTES: u64 = 16 * (12 + BOOKED_BOUNCES as u64) + 8;
 
-/// Largest length of the record of lights.
+/// ACC-REC-02: largest length of the record of lights.
 const MOST_LIGHT_BYTES: u64 = 1 << 24;
 
 /// Why accumulators cannot be read, resumed or added.
@@ -306,15 +306,17 @@ impl Head {
         for number in &mut numbers {
             *number = f64::from_bits(cursor.u64()?);
         }
+        let spare: [u8; 16] = cursor.array()?;
         let [x0, y0, z0, x1, y1, z1, power, per_area, quantum, volume] = numbers;
         let vertices: u64 = dims.iter().map(|&n| u64::from(n)).product();
         let flights = u64::from(max_bounces) + 1;
+        // ACC-HDR-03 to -09.
         let checks = [
             ("number of photons", photons > 0 && photons <= MAX_FLIGHTS / flights && traced <= photons),
             ("shard", shard.index > 0 && shard.index <= shard.count),
             ("quantity", quantity <= 1),
             ("number of vertices", vertices > 0 && vertices <= ivg_grid::DEFAULT_MAX_VERTICES),
-            ("reserved field", reserved == 0),
+            ("reserved field", reserved == 0 && spare == [0; 16]),
             ("bounds", numbers[..6].iter().all(|x| x.is_finite())),
             ("scale", numbers[6..].iter().all(|x| x.is_finite() && *x > 0.0)),
         ];

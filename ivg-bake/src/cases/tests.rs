@@ -6,6 +6,7 @@ use super::{
 };
 use crate::Estimator;
 
+mod closed_forms;
 mod effects;
 mod hard;
 

@@ -2,10 +2,11 @@
 
 use glam::{DVec3, Vec3};
 use ivg_scene::plan::{PlanOptions, analyse};
-use ivg_scene::{Effect, EffectPlan, FlatScene, Material, Need, Scene};
+use ivg_scene::{Effect, EffectPlan, FlatScene, LightKind, Material, Need, Scene, Texture, TextureFormat};
 
 use crate::cases::{SceneBuilder, difference};
-use crate::{BakeOptions, BakeResult, Silent, bake, pilot};
+use crate::stage::{Effects, Stage};
+use crate::{BakeOptions, BakeResult, Estimator, Silent, bake, pilot};
 
 /// A room with a lamp and a block; `material` adds what the block is made of.
 fn room(material: Material) -> (Scene, FlatScene) {
@@ -86,6 +87,73 @@ fn effects_that_are_there_are_not_left_out() {
         let off = difference(&baked(&scene, &without).grid, &baked(&scene, &plan).grid);
         assert!(off > 0.05, "{effect}: {off}");
         assert!(difference(&baked(&scene, &plan).grid, &baked(&scene, &planned(&scene, ALL)).grid) < 0.01);
+    }
+}
+
+/// What a plan leaves out is not looked at, be it there or not: a texture that would make all black, a sky, a mirror, glass.
+#[test]
+fn nothing_of_an_effect_that_is_left_out_is_simulated() {
+    let clear = Material { transmission: 1.0, albedo: Vec3::splat(0.5), ..Material::default() };
+    let metal = Material { specular: 1.0, specular_colour: Vec3::ONE, ..Material::default() };
+    for (effect, material) in [
+        (Effect::Textures, Material { albedo_texture: Some(0), ..Material::default() }),
+        (Effect::Sky, Material::default()),
+        (Effect::Mirrors, metal),
+        (Effect::Glass, clear),
+    ] {
+        let mut with = room(material.clone());
+        with.0.textures.push(Texture {
+            name: "black".into(),
+            width: 1,
+            height: 1,
+            format: TextureFormat::Srgb8,
+            texels: vec![0; 3],
+        });
+        with.0.sky = (effect == Effect::Sky).then_some(Vec3::ONE);
+        let mut plan = planned(&with, PlanOptions::default());
+        assert!(plan.needs(effect), "{effect}");
+        let found = baked(&with, &plan);
+        plan.effects.iter_mut().filter(|line| line.effect == effect).for_each(|line| line.need = Need::NotNeeded);
+        let plain = Material { albedo_texture: None, transmission: 0.0, specular: 0.0, ..material };
+        let without = room(plain);
+        let left_out = baked(&with, &plan);
+        assert_ne!(left_out, found, "{effect}");
+        if matches!(effect, Effect::Textures | Effect::Sky) {
+            assert_eq!(left_out, baked(&without, &plan), "{effect}");
+        } else {
+            let stage = |plan: &EffectPlan| {
+                Stage::new(&with.0, &with.1, Effects::of(plan), None).unwrap().surfaces.lobes().is_some()
+            };
+            assert!(!stage(&plan), "{effect}: photons follow the code that knows even reflection alone");
+            assert!(stage(&planned(&with, PlanOptions::default())), "{effect}");
+        }
+    }
+}
+
+/// Paths from the vertices ask whether something stands before a light only where something can.
+#[test]
+fn shadows_are_looked_for_only_where_something_can_cast_one() {
+    let gather = |scene: &(Scene, FlatScene), plan: &EffectPlan| {
+        let options = BakeOptions { estimator: Estimator::Gather, paths: 512, dims: [4; 3], ..options() };
+        bake(&scene.0, &scene.1, plan, &options, &Silent).unwrap().grid
+    };
+    let looking = |plan: &EffectPlan, need: Need| {
+        let mut plan = plan.clone();
+        plan.effects.iter_mut().filter(|line| line.effect == Effect::Shadows).for_each(|line| line.need = need);
+        plan
+    };
+    let mut empty = SceneBuilder::default();
+    let wall = empty.material(0.6, 0.0, true);
+    empty.cuboid(Vec3::ZERO, Vec3::splat(2.0), wall, true);
+    empty.light(LightKind::Point { position: DVec3::new(1.0, 1.7, 0.8), intensity: Vec3::ONE });
+    for (scene, needed) in [(empty.build(), false), (room(Material::default()), true)] {
+        let plan = planned(&scene, PlanOptions::default());
+        assert_eq!(plan.needs(Effect::Shadows), needed);
+        let [with, without] =
+            [Need::Needed, Need::NotNeeded].map(|need| gather(&scene, &looking(&plan, need)));
+        // In the empty room nothing is lost by not looking; where a block is, light would pass it.
+        let off = difference(&without, &with);
+        assert!(if needed { off > 0.05 } else { off < 1e-3 }, "{needed}: {off}");
     }
 }
 
