@@ -140,7 +140,7 @@ def start(words, limit):
     try:
         child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     except OSError as error:
-        return ("not started", str(error)), "", ""
+        return ("not started", 0), "", str(error)
     kept = [b"", b""]
 
     def keep(number, stream):
@@ -173,7 +173,7 @@ def seen(end, stdout):
     if kind == "hung":
         return "no answer in time", None, None
     if kind == "not started":
-        return "not started: %s" % value, None, None
+        return "could not be started", None, None
     verdict = NAMES.get(value)
     if verdict is None:
         return "exit status %d, which is no verdict" % value, None, None

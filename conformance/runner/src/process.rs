@@ -14,8 +14,8 @@ pub enum End {
     Signal(i32),
     /// It did not end in time and was killed.
     Hung,
-    /// It could not be started, and why.
-    NotStarted(String),
+    /// It could not be started; what it complained of says why.
+    NotStarted,
 }
 
 /// What a program did.
@@ -35,8 +35,7 @@ const KEPT: usize = 64 << 10;
 /// Runs `words` with an empty standard input.
 #[must_use]
 pub fn run(words: &[String], limit: Duration) -> Outcome {
-    let not_started =
-        |why: String| Outcome { end: End::NotStarted(why), stdout: String::new(), stderr: String::new() };
+    let not_started = |why: String| Outcome { end: End::NotStarted, stdout: String::new(), stderr: why };
     let Some((program, arguments)) = words.split_first() else { return not_started("no command".to_owned()) };
     let mut command = Command::new(program);
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -62,7 +61,7 @@ pub fn run(words: &[String], limit: Duration) -> Outcome {
                 // It may have ended in between, which is no harm.
                 let _ = child.kill();
                 let _ = child.wait();
-                break waiting.map_or_else(|error| End::NotStarted(error.to_string()), |_| End::Hung);
+                break if waiting.is_ok() { End::Hung } else { End::NotStarted };
             }
         }
     };

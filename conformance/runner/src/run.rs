@@ -258,7 +258,7 @@ fn seen(outcome: &Outcome) -> (String, Option<Verdict>, Option<u32>) {
         End::Status(status) => *status,
         End::Signal(signal) => return (format!("killed by signal {signal}"), None, None),
         End::Hung => return ("no answer in time".to_owned(), None, None),
-        End::NotStarted(why) => return (format!("not started: {why}"), None, None),
+        End::NotStarted => return ("could not be started".to_owned(), None, None),
     };
     let Some(verdict) = Verdict::from_status(status) else {
         return (format!("exit status {status}, which is no verdict"), None, None);
