@@ -314,15 +314,12 @@ impl Test {
     #[must_use]
     pub fn arguments(&self, input: &str, out: &str) -> Vec<String> {
         let args = self.args.iter().cloned();
-        let words = match &self.format {
+        match &self.format {
             None => [self.op.name().to_owned()].into_iter().chain(args).chain([out.to_owned()]).collect(),
-            Some(format) => [self.op.name(), format, input, out]
-                .map(str::to_owned)
-                .into_iter()
-                .chain(args)
-                .collect::<Vec<_>>(),
-        };
-        words
+            Some(format) => {
+                [self.op.name(), format, input, out].map(str::to_owned).into_iter().chain(args).collect()
+            }
+        }
     }
 }
 
