@@ -119,9 +119,7 @@ export class PmeshDecoder extends FrameDecoder {
       if (uvMin.some((number) => number !== 0)) refuse('PARAMETERS', 132);
       if (uvMax.some((number) => number !== 0)) refuse('PARAMETERS', 140);
     }
-    [vertexCount, wedgeCount, faceCount].forEach((count, place) => {
-      if (count > this.limits.counts) refuse('LIMIT_COUNTS', 56 + 4 * place);
-    });
+    if (Math.max(vertexCount, wedgeCount, faceCount) > this.limits.counts) refuse('LIMIT_COUNTS', 56);
     if (common.dataOffset === common.headerBytes) refuse('DIRECTORY_MISSING', common.headerBytes);
     this.#specific = {
       ...common,
@@ -270,7 +268,7 @@ export class PmeshDecoder extends FrameDecoder {
 function judgeBox(least, greatest, leastAt, greatestAt, name) {
   if (!least.every(Number.isFinite)) refuse(name, leastAt);
   if (!greatest.every(Number.isFinite)) refuse(name, greatestAt);
-  if (least.some((number, axis) => number > greatest[axis])) refuse(name, leastAt);
+  if (least.some((number, axis) => number > greatest[axis])) refuse(name, greatestAt);
 }
 
 function latticeOf(header) {
