@@ -5,6 +5,21 @@
 //! whose hemispheres contain w ([`VectorTracks`]), and φ l Y(w) / V to the coefficient of the spherical harmonic Y of the
 //! radiance ([`RadianceTracks`]). No cosine is divided by, so that grazing flights do no harm, and every flight counts in
 //! every region that it passes.
+//!
+//! # What else was tried
+//!
+//! The Cornell box with the bunny, 16³ vertices, irradiance along the axes at the vertices half a cell or more from surfaces, against
+//! 12288 paths a vertex (example `oracle_error`). As it is, the error is 2.41 % after a million photons and 1.26 % after 16 million.
+//!
+//! | instead | a million | 16 million | |
+//! |---|---|---|---|
+//! | a tent over two cells for the nearest cell (its second moment, by neighbours) | 2.52 % | 1.86 % | twice the width costs more bias than it saves noise |
+//! | the mean less its neighbours' curvature / 24, exact for parabolas | 2.64 % | 1.01 % | noise grows by a tenth; pays from about three million photons on |
+//! | emission and first reflection as scrambled Sobol points, blocks of 2048 or 16384 photons | - | - | noise² times 0.91 to 0.93 (125,000 and 500,000 photons, seven seeds), time times about 1.02: not enough to tie photons to blocks |
+//!
+//! Two reflections for each first hit save half of the first flight, which is not deposited: a seventh of the time of a photon at
+//! most, halved again for two, and what both share is as much noise as the points above take away. The example `deposits` prints
+//! noise² times time of this estimator and of [crossings](super::face_crossing).
 
 use ivg_format::{HemisphereVectors, Quantity, RadianceHarmonics};
 use ivg_grid::harmonics::{COEFFICIENTS, basis};
