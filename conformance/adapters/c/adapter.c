@@ -509,9 +509,9 @@ int main(int argc, char **argv)
         return 0;
     }
 
-    const int words = strcmp(command, "decode") == 0 || strcmp(command, "prefixes") == 0                                   ? 5
-                      : strcmp(command, "prefix") == 0 || strcmp(command, "chunks") == 0 || strcmp(command, "lod") == 0 ? 6
-                                                                                                                          : 0;
+    int words = 0;
+    if (strcmp(command, "decode") == 0 || strcmp(command, "prefixes") == 0) words = 5;
+    if (strcmp(command, "prefix") == 0 || strcmp(command, "chunks") == 0 || strcmp(command, "lod") == 0) words = 6;
     if (argc != words) fail(WRONG_USAGE, "see conformance/PROTOCOL.md");
     const int is_ivg = strcmp(argv[2], "ivg") == 0;
     if (!is_ivg && strcmp(argv[2], "pmesh") != 0) fail(WRONG_USAGE, "ivg or pmesh");

@@ -559,7 +559,7 @@ typedef struct ivg_record {
     uint64_t length;        /* in bytes, envelope and padding included */
     const uint8_t *payload; /* in the bytes that the caller gave; valid as long as they are */
     uint32_t vertices;      /* that it holds or, of a validity record, covers */
-    uint32_t index_bytes;   /* of the list of vertices before the values (IVG-DIRE-02); 0 but in bundles of the order explicit */
+    uint32_t index_bytes;   /* of the list before the values (IVG-DIRE-02); 0 but in bundles of the order explicit */
     uint64_t first_vertex;  /* of a validity record: the linear index of the first vertex */
 } ivg_record;
 
