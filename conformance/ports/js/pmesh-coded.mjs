@@ -17,10 +17,9 @@ export class CodedPackets {
 
   /**
    * @param {import('./pmesh.mjs').PmeshHeader} header the header
-   * @param {import('./pmesh-mesh.mjs').Mesh} mesh what earlier packets brought
    * @param {import('./pmesh-lattice.mjs').Lattice | null} lattice that of the positions, null for binary32
    */
-  constructor(header, mesh, lattice) {
+  constructor(header, lattice) {
     this.#splits = new Splits(header, lattice);
     this.#secondPass = header.attributeBits === 0 ? null : new SecondPass(header, this.#splits.vertices);
   }

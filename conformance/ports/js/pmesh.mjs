@@ -162,7 +162,7 @@ export class PmeshDecoder extends FrameDecoder {
     this.mesh = new Mesh(header);
     this.#packets = header.mode === 'raw'
       ? new RawPackets(header, this.mesh, lattice)
-      : new CodedPackets(header, this.mesh, lattice);
+      : new CodedPackets(header, lattice);
     return { kind: 'header', header };
   }
 

@@ -139,6 +139,19 @@ test('records fetched alone (COM-REC-06)', () => {
   assert.equal(grid.light().indices.length, count);
 });
 
+test('bytes behind the end, and input behind an error (COM-REC-08, COM-VERD-03)', () => {
+  const bytes = new Uint8Array([...read('ivg/0003-packed.ivg'), 0, 1, 2]);
+  const stream = new IvgDecoder({}, { stream: true });
+  assert.equal(stream.push(bytes), bytes.length - 3);
+  assert.equal(stream.push(bytes), 0);
+  stream.finish();
+  const file = new IvgDecoder();
+  for (const more of [bytes, bytes, new Uint8Array(0)]) {
+    assert.throws(() => file.push(more), { name: 'TRAILING_BYTES', code: 115, offset: bytes.length - 3 });
+  }
+  assert.throws(() => new IvgDecoder().finish(), { name: 'TRUNCATED', verdict: 'need-more' });
+});
+
 test('levels are the same from above and from below (PMESH-LVL-01)', () => {
   for (const name of ['0011-raw-attributes', '0017-raw-out-of-order', '0018-raw-deep', '0051-coded-attributes']) {
     const decoder = new PmeshDecoder();
