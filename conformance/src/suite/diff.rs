@@ -124,9 +124,9 @@ fn in_field(twin: &[u8], file: &[u8], field: &Field, shift: Shift) -> Vec<Edit> 
     }
     if let (Some(first), Some(last)) = (runs.first().cloned(), runs.last().cloned()) {
         if places.len() <= WHOLE {
-            runs = vec![0..places.len()];
+            runs = Vec::from([0..places.len()]);
         } else if runs.len() > RUNS {
-            runs = vec![first.start..last.end];
+            runs = Vec::from([first.start..last.end]);
         }
     }
     let mut edits = Vec::new();

@@ -76,7 +76,7 @@ pub fn gaps(manifest: &Manifest) -> Vec<String> {
             match (there, excepted) {
                 (false, false) => gaps.push(format!("{clause} has no {kind} test")),
                 (true, true) => {
-                    gaps.push(format!("{clause} has a {kind} test, and is listed as having none"))
+                    gaps.push(format!("{clause} has a {kind} test, and is listed as having none"));
                 }
                 _ => {}
             }
