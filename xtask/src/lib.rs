@@ -3,16 +3,18 @@
 //! ```text
 //! cargo xtask test --install     everything that CI runs
 //! cargo xtask tidy               file lengths, left-over markers, README and CI agree
+//! cargo xtask conformance-zip    the conformance suite as one file, for people without this repository
 //! cargo xtask peers mesh --meshes FOLDER     progressive meshes beside meshoptimizer and Draco
 //! cargo xtask peers bake --meshes FOLDER     baked light beside Mitsuba 3 and Embree
 //! ```
 //!
 //! [`steps`] is the list of what the suite does, in order; [`runner`] runs such a list and stops at the first failure;
-//! [`tools`] finds, or with `--install` fetches, what the machine lacks; [`tidy`] looks at the sources; [`peers`] builds and
+//! [`archive`] packs the conformance suite; [`tools`] finds, or with `--install` fetches, what the machine lacks; [`tidy`] looks at the sources; [`peers`] builds and
 //! calls the comparisons in `tools/peers`.
 
 #![forbid(unsafe_code)]
 
+pub mod archive;
 pub mod fuzz;
 pub mod invocation;
 pub mod peers;

@@ -3,12 +3,12 @@
 #![forbid(unsafe_code)]
 
 use clap::{Args, Parser, Subcommand};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use xtask::peers::{self, Comparison, Request};
 use xtask::runner::{self, Context};
 use xtask::steps::{self, Selection};
-use xtask::{tidy, workspace_root};
+use xtask::{archive, tidy, workspace_root};
 
 /// Commands of the workspace.
 #[derive(Debug, Parser)]
@@ -24,6 +24,12 @@ enum Command {
     Test(TestOptions),
     /// Look at the sources: file lengths, left-over markers, machine paths, README and CI agree.
     Tidy,
+    /// Pack the conformance suite: vectors, runner, adapters, ports, specification; the same bytes from the same sources.
+    ConformanceZip {
+        /// The file to write [default: target/ivg-conformance.zip].
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
     /// Install peers from PyPI and crates.io, and print them and this project side by side. Needs Python 3 and the network.
     #[command(subcommand)]
     Peers(PeersCommand),
@@ -77,6 +83,14 @@ struct TestOptions {
     fuzz_seconds: u32,
 }
 
+/// Writes the archive of the conformance suite; its length.
+fn pack(root: &Path, out: &Path) -> std::io::Result<usize> {
+    let archive = archive::zip(&archive::files(root)?)?;
+    std::fs::create_dir_all(out.parent().unwrap_or(root))?;
+    std::fs::write(out, &archive)?;
+    Ok(archive.len())
+}
+
 fn main() -> ExitCode {
     let mut context = Context::new(workspace_root());
     let passed = match CommandLine::parse().command {
@@ -117,6 +131,21 @@ fn main() -> ExitCode {
             let request = Request { what, meshes, only: options.only, quick: options.quick, out };
             let steps = peers::steps(context.root(), &request);
             runner::run(&steps, &mut context, &mut std::io::stdout())
+        }
+        Command::ConformanceZip { out } => {
+            let here = std::env::current_dir().unwrap_or_default();
+            let out =
+                out.map_or_else(|| context.root().join("target/ivg-conformance.zip"), |out| here.join(out));
+            return match pack(context.root(), &out) {
+                Ok(bytes) => {
+                    println!("{}: {bytes} bytes", out.display());
+                    ExitCode::SUCCESS
+                }
+                Err(error) => {
+                    eprintln!("cannot write {}: {error}", out.display());
+                    ExitCode::FAILURE
+                }
+            };
         }
         Command::Tidy => runner::run(&[tidy::step()], &mut context, &mut std::io::stdout()),
     };
