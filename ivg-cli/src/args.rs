@@ -4,6 +4,7 @@ mod conformance;
 mod grid;
 mod mesh;
 mod registry;
+mod robustness;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -16,6 +17,7 @@ pub(crate) use self::grid::{
     ReconstructionArgument, SampleArguments,
 };
 pub(crate) use self::mesh::{ExtractArguments, MeshArguments, SCENE_POSITIONS, StorageArguments};
+pub(crate) use self::robustness::RobustnessArguments;
 use crate::scene_args::{Bounds, GridSize, PictureSize, ScheduleArgument, ShardArgument};
 
 /// Streams lit 3D scenes: bakes indirect light into an irradiance vector grid, orders meshes coarse-to-fine, serves both,
@@ -37,6 +39,10 @@ pub(crate) enum Command {
     Bake(BakeArguments),
     /// Add up the accumulator files of a bake that was divided: the same .ivg file, byte for byte, as if it had not been.
     Merge(MergeArguments),
+    /// Geometric robustness: bake the same grid with fewer faces, and tell how far its light is off and what is saved.
+    ///
+    /// Every mesh is ordered once and taken at the level that all share by their error; faces that emit light stay whole.
+    Robustness(RobustnessArguments),
     /// Order a mesh coarse-to-fine and write it as a progressive mesh (.pmesh).
     Mesh(MeshArguments),
     /// Write a scene directory that any HTTP server can stream: scene.glb, light.ivg, one .pmesh a mesh.

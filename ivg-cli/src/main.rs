@@ -9,6 +9,7 @@ mod baking;
 mod breakdown;
 mod commands;
 mod convert;
+mod decimation;
 mod failure;
 mod files;
 mod kind;
@@ -60,6 +61,7 @@ fn run(command: Command) -> Result<ExitCode, Failure> {
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Bake(arguments) => commands::bake::run(&arguments),
         Command::Merge(arguments) => commands::merge::run(&arguments),
+        Command::Robustness(arguments) => commands::robustness::run(&arguments),
         Command::Mesh(arguments) => commands::mesh::run(&arguments),
         Command::Pack(arguments) => commands::pack::run(&arguments),
         Command::Info(arguments) => commands::info::run(&arguments),

@@ -13,5 +13,6 @@ pub(crate) mod pack;
 pub(crate) mod plan;
 pub(crate) mod recode;
 pub(crate) mod render;
+pub(crate) mod robustness;
 pub(crate) mod sample;
 pub(crate) mod serve;
