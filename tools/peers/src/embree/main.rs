@@ -123,7 +123,7 @@ impl RayFile {
             bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
         let (&[triangles, rays], rest) = words.split_first_chunk::<2>()?;
         let (triangles, rays) = (triangles as usize, rays as usize);
-        if bytes.len() % 4 != 0 || rest.len() != 9 * triangles + 8 * rays {
+        if !bytes.len().is_multiple_of(4) || rest.len() != 9 * triangles + 8 * rays {
             return None;
         }
         let (corners, rest) = rest.split_at(9 * triangles);
