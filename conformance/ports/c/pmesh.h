@@ -2963,17 +2963,19 @@ static frame_result pmesh_coded_normal(pmesh_decoder *decoder, const pmesh_predi
             memcpy(code, turned, sizeof code);
         }
     }
-    if (!pmesh_is_exact(decoder, prediction, 0, same, &c)) {
+    {
         int32_t outside[2];
         const int turn = (code[0] < 0 ? -code[0] : code[0]) + (code[1] < 0 ? -code[1] : code[1]) > greatest; /* 5 */
         if (turn) {
             pmesh_turn(greatest, code, outside);
             memcpy(code, outside, sizeof code);
         }
-        for (int i = 0; i < 2; i++) {
-            const int32_t residual = pmesh_residual(&decoder->symbols, &work->models->normals, c);
-            residuals += pmesh_magnitude(residual);
-            code[i] = pmesh_wrap((int64_t)code[i] + residual);
+        if (!pmesh_is_exact(decoder, prediction, 0, same, &c)) {
+            for (int i = 0; i < 2; i++) {
+                const int32_t residual = pmesh_residual(&decoder->symbols, &work->models->normals, c);
+                residuals += pmesh_magnitude(residual);
+                code[i] = pmesh_wrap((int64_t)code[i] + residual);
+            }
         }
         if (!pmesh_is_in(code, 2, -greatest, greatest)) return frame_error(PMESH_ATTRIBUTE, 0);
         if (turn) {

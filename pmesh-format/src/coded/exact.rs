@@ -53,7 +53,9 @@ impl Exact {
         let mut found = [0.0; 3];
         for (k, found) in found.iter_mut().enumerate() {
             let units = self.first[k] + i64::from(cell[k]);
-            let ends = [units, units + 1].map(|units| rank((units as f64 * self.unit) as f32));
+            // The lowest cell may begin at −2¹²⁸, below all numbers.
+            let ends =
+                [units, units + 1].map(|units| rank(((units as f64 * self.unit) as f32).max(f32::MIN)));
             // Both zeros are in the cell that begins with them.
             let [first, last] =
                 [(units, ends[0]), (units + 1, ends[1])].map(|(units, rank)| rank - i64::from(units == 0));

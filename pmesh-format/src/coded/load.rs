@@ -1,6 +1,6 @@
 //! Reading a coded packet.
 
-use super::rans::Reader;
+use super::rans::{Coder, Reader};
 use super::walk::{Bounds, Nothing};
 use super::{Changes, Fault, LENGTH, SLOTS_A_BYTE, State, least_bytes};
 use crate::code::codes;
@@ -20,7 +20,7 @@ impl State {
         let mut reader = Reader::new(payload).ok_or(LENGTH)?;
         self.packet(&mut reader, &Nothing, extent, bounds, changes)?;
         self.attributes(&mut reader, None, extent, changes)?;
-        if !reader.at_end() {
+        if reader.failed() || !reader.at_end() {
             return Err(LENGTH);
         }
         let needed = least_bytes(extent).max(changes.looked_at.div_ceil(SLOTS_A_BYTE));

@@ -45,7 +45,7 @@ impl Cells {
         for axis in 0..3 {
             // Numbers in ascending order: 0 is the place of +0, −1 that of −0.
             let place = |units: i64| {
-                let x = (units as f64 * unit) as f32;
+                let x = ((units as f64 * unit) as f32).max(f32::MIN);
                 let size = i64::from(x.abs().to_bits());
                 if units == 0 {
                     -1
