@@ -115,7 +115,7 @@ pub fn accumulate(
     }
     monitor.stage(BakeStage::Preparation);
     let ready = Ready::new(scene, flat, plan, options)?;
-    let photons = options.photons;
+    let photons = Ready::photons(options, plan.max_bounces)?;
     let workers = Workers { threads: options.thread_count(), monitor, total_photons: photons };
     let surroundings = ready.surroundings(options.estimator, &workers)?;
     let vertices = (0..ready.cells.len())

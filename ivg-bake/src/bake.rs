@@ -9,6 +9,7 @@ use crate::estimate::Estimate;
 use crate::estimate::face_crossing::FaceCrossing;
 use crate::estimate::held::{Held, Linear};
 use crate::estimate::track_length::{RadianceTracks, VectorTracks};
+use crate::pilot;
 use crate::ready::Ready;
 use crate::region::Regions;
 use crate::stage::Effects;
@@ -93,11 +94,41 @@ pub fn bake(
 ) -> Result<BakeResult, BakeError> {
     monitor.stage(BakeStage::Preparation);
     let ready = Ready::new(scene, flat, plan, options)?;
-    let photons = options.photons.min(ready.most_photons);
+    bake_ready(scene, flat, &ready, plan, options, monitor)
+}
+
+/// As [`bake`], after as many reflections as are worth following have been written into the plan
+/// ([`measure_reflections`](crate::measure_reflections)): the scene is made ready once for both.
+///
+/// # Errors
+///
+/// As [`bake`].
+pub fn bake_measured(
+    scene: &Scene,
+    flat: &FlatScene,
+    plan: &mut EffectPlan,
+    options: &BakeOptions,
+    monitor: &dyn Monitor,
+) -> Result<BakeResult, BakeError> {
+    monitor.stage(BakeStage::Preparation);
+    let ready = Ready::new(scene, flat, plan, options)?;
+    pilot::measure(&ready, plan, options, monitor)?;
+    bake_ready(scene, flat, &ready, plan, options, monitor)
+}
+
+fn bake_ready(
+    scene: &Scene,
+    flat: &FlatScene,
+    ready: &Ready<'_>,
+    plan: &EffectPlan,
+    options: &BakeOptions,
+    monitor: &dyn Monitor,
+) -> Result<BakeResult, BakeError> {
+    let photons = Ready::photons(options, plan.max_bounces)?;
     let workers = Workers { threads: options.thread_count(), monitor, total_photons: photons };
     let surroundings = ready.surroundings(options.estimator, &workers)?;
     let tracer = ready.tracer(options.seed, plan.max_bounces);
-    let job = Job { options, ready: &ready, surroundings: &surroundings, tracer, workers, photons };
+    let job = Job { options, ready, surroundings: &surroundings, tracer, workers, photons };
     let simulated = match (options.estimator, options.quantity) {
         (Estimator::Gather, Quantity::Vectors) => gathering::run::<ivg_format::HemisphereVectors>(&job)?,
         (Estimator::Gather, Quantity::Radiance) => gathering::run::<ivg_format::RadianceHarmonics>(&job)?,

@@ -5,27 +5,33 @@
 
 use std::time::Instant;
 
+use ivg_format::HemisphereVectors;
 use ivg_scene::{Cost, Effect, EffectPlan, FlatScene, Need, Scene};
 
 use crate::accumulate::{Sums, Total};
 use crate::bake::Chosen;
+use crate::estimate::vertex_gather::{Enough, FEWEST_PATHS};
 use crate::estimate::{Estimate, Flight};
 use crate::ready::Ready;
 use crate::stage::Effects;
 use crate::tally::{Traced, run};
-use crate::trace::{BOOKED_BOUNCES, Tracer};
+use crate::trace::{BOOKED_BOUNCES, Books, Tracer};
+use crate::validity::Surroundings;
 use crate::workers::Workers;
-use crate::{BakeError, BakeOptions, Silent};
+use crate::{BakeError, BakeOptions, Estimator, Monitor, Silent};
 
 /// The share of the photons that a pilot traces: one in so many.
 const PHOTONS_SHARE: u64 = 100;
 
-/// The fewest photons a pilot traces: enough for energies after each reflection to a few per cent.
-const FEWEST_PHOTONS: u64 = 2_000;
+/// The fewest photons a pilot traces, enough for energies after each reflection to a few per cent, and the most.
+const PHOTONS: (u64, u64) = (2_000, 20_000);
 
 /// Share of the cutoff that a pilot leaves to the flights that are cut: it knows their energy from a hundredth of the photons, and
 /// some flights pass more of the grid than others.
 const CUTOFF_SHARE: f64 = 0.5;
+
+/// Vertices whose paths are timed.
+const TIMED_VERTICES: usize = 32;
 
 /// Reflections followed by a pilot, and the most it puts into a plan.
 const MOST_BOUNCES: u32 = BOOKED_BOUNCES as u32 - 1;
@@ -58,8 +64,8 @@ impl PilotReport {
     }
 }
 
-/// Traces one in a hundred of the photons that `options` ask for, on one thread, and writes into the plan what each needed
-/// effect costs and how many reflections are worth following.
+/// Traces one in a hundred of the photons that `options` ask for, from 2,000 to 20,000, on one thread, and writes into the plan
+/// what each needed effect costs and how many reflections are worth following.
 ///
 /// How costs are found: rays are timed alone, and again with deposits; the difference is what deposits cost. Both are scaled
 /// up to all photons. Direct light costs the rays of first flights, counted; the sky costs its share of the photons;
@@ -67,8 +73,10 @@ impl PilotReport {
 /// difference that is lost in the noise counts as none); diffuse indirect light costs the rest and the preparation. Shadows cost the bake nothing of their own. The energy share of an effect is the share of all energy in
 /// flight that belongs to it (of textures, mirrors and glass: by how much they change the reflected energy).
 ///
-/// Reflections: the fewest after which the energy still to be reflected, summed over all further flights, is at most
-/// half of `plan.energy_cutoff` of the emitted and of the reflected energy; at most 63.
+/// [`Estimator::Gather`] traces no photons: its time is that of the paths from 32 of the vertices, scaled up to all, and counts as
+/// that of rays; the photons of the pilot tell energies and reflections.
+///
+/// Reflections: as [`measure_reflections`].
 ///
 /// # Errors
 ///
@@ -79,7 +87,7 @@ pub fn pilot(
     plan: &mut EffectPlan,
     options: &BakeOptions,
 ) -> Result<PilotReport, BakeError> {
-    let photons = (options.photons / PHOTONS_SHARE).max(FEWEST_PHOTONS.min(options.photons));
+    let photons = trial_photons(options);
     let workers = Workers { threads: 1, monitor: &Silent, total_photons: photons };
 
     let started = Instant::now();
@@ -89,27 +97,32 @@ pub fn pilot(
 
     let tracer = ready.tracer(options.seed, MOST_BOUNCES);
     let (rays, ray_time) = timed(|| run(&tracer, &NoDeposits, photons, &workers))?;
-    let estimate = Chosen::new(options, ready.cells, &surroundings.regions)?;
-    let (_, full_time) = timed(|| estimate.run(&tracer, photons, &workers))?;
+    let gathers = options.estimator == Estimator::Gather;
+    // Paths take the place of photons.
+    let counted = surroundings.validity.iter().filter(|validity| **validity > 0).count() as u64;
+    let all = if gathers { u64::from(options.paths).saturating_mul(counted) } else { options.photons };
+    let scale = all as f64 / photons as f64;
+    let (ray_seconds, deposit_seconds) = if gathers {
+        (path_seconds(&ready, &surroundings, options) * all as f64, 0.0)
+    } else {
+        let estimate = Chosen::new(options, ready.cells, &surroundings.regions)?;
+        let (_, full_time) = timed(|| estimate.run(&tracer, photons, &workers))?;
+        (ray_time * scale, (full_time - ray_time).max(0.0) * scale)
+    };
     let books = &rays.books;
-    let emitted = books.after_bounces[0].max(1) as f64;
-    let energy_after_bounces: Vec<f64> = books.after_bounces.iter().map(|&e| e as f64 / emitted).collect();
-    if plan.needs(Effect::DiffuseIndirect) {
-        plan.max_bounces = bounces_worth_following(&energy_after_bounces, CUTOFF_SHARE * plan.energy_cutoff);
-    }
-
-    let scale = options.photons as f64 / photons as f64;
+    let energy_by_bounce = energy_after_bounces(books);
+    follow_what_is_worth_it(plan, &energy_by_bounce);
     let report = PilotReport {
         photons,
         flights_per_photon: books.flights as f64 / photons as f64,
         max_bounces: plan.max_bounces,
         preparation_seconds,
-        ray_seconds: ray_time * scale,
-        deposit_seconds: (full_time - ray_time).max(0.0) * scale,
-        energy_by_bounce: energy_after_bounces,
+        ray_seconds,
+        deposit_seconds,
+        energy_by_bounce,
     };
     let in_flight: f64 = report.energy_by_bounce.iter().sum();
-    let first_flights = report.ray_seconds / report.flights_per_photon;
+    let first_flights = if gathers { 0.0 } else { report.ray_seconds / report.flights_per_photon };
     let sky_share = ready.stage.emitters.sky_share();
     // The same photons with other effects, rays alone.
     let effects = Effects::of(plan);
@@ -156,6 +169,75 @@ pub fn pilot(
         };
     }
     Ok(report)
+}
+
+/// Follows photons until they end, in number as [`pilot`] does, and writes into the plan how many reflections are worth following: the
+/// fewest after which the energy still to be reflected, summed over all further flights, is at most half of
+/// `plan.energy_cutoff` of the emitted and of the reflected energy; at most 63. That is counted, not timed: the same scene, plan
+/// and options give the same number.
+///
+/// # Errors
+///
+/// As [`bake`](crate::bake()).
+pub fn measure_reflections(
+    scene: &Scene,
+    flat: &FlatScene,
+    plan: &mut EffectPlan,
+    options: &BakeOptions,
+) -> Result<(), BakeError> {
+    let ready = Ready::new(scene, flat, plan, options)?;
+    measure(&ready, plan, options, &Silent)
+}
+
+/// The same, with what has been made ready.
+pub(crate) fn measure(
+    ready: &Ready<'_>,
+    plan: &mut EffectPlan,
+    options: &BakeOptions,
+    monitor: &dyn Monitor,
+) -> Result<(), BakeError> {
+    let photons = trial_photons(options);
+    let workers = Workers { threads: options.thread_count(), monitor: &Silent, total_photons: photons };
+    if monitor.cancelled() {
+        return Err(BakeError::Cancelled { done: 0, total: options.photons });
+    }
+    let traced = run(&ready.tracer(options.seed, MOST_BOUNCES), &NoDeposits, photons, &workers)?;
+    follow_what_is_worth_it(plan, &energy_after_bounces(&traced.books));
+    Ok(())
+}
+
+/// Photons of a trial run.
+fn trial_photons(options: &BakeOptions) -> u64 {
+    (options.photons / PHOTONS_SHARE).clamp(PHOTONS.0, PHOTONS.1).min(options.photons)
+}
+
+/// Energy that flies on after k reflections, as a share of what the lights emit.
+fn energy_after_bounces(books: &Books) -> Vec<f64> {
+    let emitted = books.after_bounces[0].max(1) as f64;
+    books.after_bounces.iter().map(|&e| e as f64 / emitted).collect()
+}
+
+fn follow_what_is_worth_it(plan: &mut EffectPlan, energy_after_bounces: &[f64]) {
+    if plan.needs(Effect::DiffuseIndirect) {
+        plan.max_bounces = bounces_worth_following(energy_after_bounces, CUTOFF_SHARE * plan.energy_cutoff);
+    }
+}
+
+/// Time of a path from a vertex, measured at some that light reaches \[s of CPU\].
+fn path_seconds(ready: &Ready<'_>, surroundings: &Surroundings, options: &BakeOptions) -> f64 {
+    let valid: Vec<usize> =
+        (0..ready.cells.len()).filter(|&vertex| surroundings.validity[vertex] > 0).collect();
+    let count = valid.len().min(TIMED_VERTICES);
+    let started = Instant::now();
+    let paths: u64 = (0..count)
+        .map(|n| {
+            let vertex = valid[n * valid.len() / count];
+            let enough = Enough::Paths(FEWEST_PATHS);
+            let eye = surroundings.eyes[vertex];
+            u64::from(ready.stage.gather::<HemisphereVectors>(eye, vertex, options.seed, enough).paths)
+        })
+        .sum();
+    started.elapsed().as_secs_f64() / paths.max(1) as f64
 }
 
 /// The fewest reflections that leave at most `cutoff` of the emitted energy in all flights beyond, and of the reflected energy

@@ -20,8 +20,6 @@ pub(crate) struct Ready<'a> {
     pub(crate) cells: Boxes,
     /// Bake units per metre, squared: from power per square bake unit to W/m².
     pub(crate) per_area: f64,
-    /// The most photons that the sums hold.
-    pub(crate) most_photons: u64,
 }
 
 impl<'a> Ready<'a> {
@@ -31,16 +29,11 @@ impl<'a> Ready<'a> {
         plan: &EffectPlan,
         options: &BakeOptions,
     ) -> Result<Self, BakeError> {
-        let (photons, bounces) = (options.photons, plan.max_bounces);
-        let most_photons = MAX_FLIGHTS / (u64::from(bounces) + 1);
         if options.quantity == Quantity::Radiance && !options.estimator.gives_radiance() {
             return Err(BakeError::Quantity { estimator: options.estimator });
         }
-        if photons == 0 {
+        if options.photons == 0 {
             return Err(BakeError::NoPhotons);
-        }
-        if options.accuracy.is_none() && options.estimator != Estimator::Gather && photons > most_photons {
-            return Err(BakeError::TooManyPhotons { photons, bounces, most: most_photons });
         }
         if let Some(asked) = options.accuracy.filter(|asked| !(*asked > 0.0 && *asked < 1.0)) {
             return Err(BakeError::Accuracy { asked });
@@ -55,9 +48,24 @@ impl<'a> Ready<'a> {
         }));
         let (first, last) = (DVec3::from(lattice.origin), DVec3::from(last_vertex(&lattice)));
         let stage = Stage::new(scene, flat, Effects::of(plan), Some((first - half, last + half)))?;
+        let stage = stage.with_shadows_of(plan);
         let cells = Boxes::dual_cells(&lattice, thickness, stage.space);
         let per_area = stage.space.scale().powi(2);
-        Ok(Self { stage, lattice, cells, per_area, most_photons })
+        Ok(Self { stage, lattice, cells, per_area })
+    }
+
+    /// The most photons that are traced: those of the options, and with an accuracy no more than the sums hold with so many
+    /// reflections.
+    ///
+    /// # Errors
+    ///
+    /// [`BakeError::TooManyPhotons`] for more photons than that without an accuracy.
+    pub(crate) fn photons(options: &BakeOptions, bounces: u32) -> Result<u64, BakeError> {
+        let (photons, most) = (options.photons, MAX_FLIGHTS / (u64::from(bounces) + 1));
+        if options.accuracy.is_none() && options.estimator != Estimator::Gather && photons > most {
+            return Err(BakeError::TooManyPhotons { photons, bounces, most });
+        }
+        Ok(photons.min(most))
     }
 
     /// What each vertex sees; for the estimator as printed, which knows no geometry, everything.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
-use ivg_scene::{Effect, EffectPlan, FlatScene, Scene};
+use ivg_scene::{Effect, EffectPlan, FlatScene, Need, Scene};
 
 use crate::BakeError;
 use crate::accel::TraceScene;
@@ -24,6 +24,8 @@ pub(crate) struct Stage<'a> {
     sight: Option<TraceScene>,
     /// What stops light: without glass.
     clear: Option<TraceScene>,
+    /// Whether anything can stand between a surface and a light that it faces.
+    shadows: bool,
 }
 
 /// Which effects cost something only where they are simulated.
@@ -97,7 +99,7 @@ impl<'a> Stage<'a> {
         let emitters = Emitters::new(scene, &surfaces, space, world, effects.sky)?;
         let tree = |triangles: Option<Vec<_>>| triangles.map(|t| TraceScene::new(&t)).transpose();
         let (sight, clear) = (tree(surfaces.without_panes())?, tree(surfaces.without_glass())?);
-        Ok(Self { space, surfaces, accel, emitters, world, sight, clear })
+        Ok(Self { space, surfaces, accel, emitters, world, sight, clear, shadows: true })
     }
 
     /// The same scene with other effects, for photons; who looks around sees what stops rays.
@@ -114,7 +116,21 @@ impl<'a> Stage<'a> {
         let (space, world, accel) = (self.space, self.world, Arc::clone(&self.accel));
         let surfaces = Surfaces::new(scene, flat, space, effects)?;
         let emitters = Emitters::new(scene, &surfaces, space, world, effects.sky)?;
-        Ok(Self { space, surfaces, accel, emitters, world, sight: None, clear: None })
+        let shadows = self.shadows;
+        Ok(Self { space, surfaces, accel, emitters, world, sight: None, clear: None, shadows })
+    }
+
+    /// The same, where surfaces are lit by all lights that they face if the plan has found that nothing can cast a shadow
+    /// ([`Effect::Shadows`]); no ray looks for what could.
+    pub(crate) fn with_shadows_of(self, plan: &EffectPlan) -> Self {
+        let shadows = plan.get(Effect::Shadows).is_none_or(|planned| planned.need != Need::NotNeeded);
+        Self { shadows, ..self }
+    }
+
+    /// Whether something stands between a point of a surface and a light that the surface faces.
+    #[inline]
+    pub(crate) fn is_shadowed(&self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
+        self.shadows && self.accel.occluded(origin, direction, distance)
     }
 
     /// What stops sight: all surfaces but panes. The inside of a solid of glass is apart from the air around it.

@@ -113,9 +113,12 @@ pub(crate) struct PlanArguments {
     /// Number of photons of the bake whose cost is estimated; the pilot traces 1 % of them.
     #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = crate::scene_args::count::<u64>)]
     pub(crate) photons: u64,
-    /// Share of the light energy that may be left out by cutting bounces, in (0, 1).
-    #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = crate::scene_args::share)]
-    pub(crate) energy_cutoff: f64,
+    /// Share of the light energy that may be left out by cutting bounces, in (0, 1) [default: 0.01].
+    #[arg(long, value_name = "SHARE", value_parser = crate::scene_args::share, conflicts_with = "accuracy")]
+    pub(crate) energy_cutoff: Option<f64>,
+    /// Plan for ivg bake --accuracy: bounces are cut where what is left is a tenth of the error asked for.
+    #[arg(long, value_name = "PERCENT", value_parser = crate::scene_args::percent)]
+    pub(crate) accuracy: Option<f64>,
     /// Which light effects are planned.
     #[arg(long, value_enum, default_value_t = EffectsArgument::Needed)]
     pub(crate) effects: EffectsArgument,
@@ -136,11 +139,11 @@ pub(crate) struct BakeArguments {
     /// Trace only part K of N of the photons, and write their sums for ivg merge: the output is an accumulator file (.acc).
     #[arg(long, value_name = "K/N", conflicts_with_all = ["accuracy", "time", "checkpoint", "resume"])]
     pub(crate) shard: Option<ShardArgument>,
-    /// Write the sums to this accumulator file now and then, and at the end.
-    #[arg(long, value_name = "FILE.acc", conflicts_with = "accuracy")]
+    /// Write the sums to this accumulator file now and then, and at the end. Not with --accuracy.
+    #[arg(long, value_name = "FILE.acc")]
     pub(crate) checkpoint: Option<PathBuf>,
-    /// Go on from this accumulator file, up to --photons; the file may be that of --checkpoint.
-    #[arg(long, value_name = "FILE.acc", conflicts_with = "accuracy")]
+    /// Go on from this accumulator file, up to --photons; the file may be that of --checkpoint. Not with --accuracy.
+    #[arg(long, value_name = "FILE.acc")]
     pub(crate) resume: Option<PathBuf>,
     /// Print figures as JSON.
     #[arg(long)]

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use ivg_bake::{
-    Accumulator, AccuracyReport, BakeOptions, BakeResult, BakeStats, Estimator, PilotReport, Shard,
+    Accumulator, AccuracyReport, BakeOptions, BakeResult, BakeStats, Estimator, PilotReport,
+    ResolutionLimits, Shard,
 };
 use ivg_format::{EncodeOptions, Encoding, GridSource, Order, Quantity};
 use ivg_grid::IrradianceGrid;
@@ -71,7 +72,7 @@ pub(crate) fn plan(
     options: &BakeOptions,
 ) -> Result<(EffectPlan, Option<PilotReport>), Failure> {
     let LoadedScene { scene, flat } = loaded;
-    let mut plan = plan::analyse(scene, flat, &planning);
+    let mut plan = analysed(loaded, planning);
     if scene.require_light().is_err() {
         return Ok((plan, None));
     }
@@ -111,14 +112,10 @@ pub(crate) fn bake_with(
     }
     let start = Instant::now();
     let grid_reason = decide_grid(loaded, settings, &mut options)?;
-    let mut planning = planning(settings.effects);
-    if let Some(accuracy) = settings.accuracy {
-        planning.energy_cutoff = planning.energy_cutoff.min(CUTOFF_SHARE * accuracy);
-    }
-    let (plan, _) = plan(loaded, planning, &pilot_options(&options))?;
+    let mut plan = analysed(loaded, planning_for(settings.effects, settings.accuracy));
     report_unsupported(&loaded.scene, &plan);
     let watch = Watch::new(start, settings.time, &options);
-    let result = simulate(loaded, &plan, &options, &watch, sums);
+    let result = simulate(loaded, &mut plan, &options, &watch, sums);
     let stages = watch.finish();
     let result = result?;
     let elapsed = start.elapsed();
@@ -131,6 +128,12 @@ pub(crate) fn bake_with(
         estimator: options.estimator,
     };
     let file = encode(&result.grid, &result.stats, &stored)?;
+    if let Some(budget) = settings.budget.filter(|budget| file.len() as u64 > *budget) {
+        return Err(Failure::usage(format_args!(
+            "the file would have {} bytes, more than the {budget} of --budget; even the smallest grid takes so many",
+            file.len()
+        )));
+    }
     let (grid, stats, accuracy) = (result.grid, result.stats, result.accuracy);
     Ok(Baked { plan, grid, stats, accuracy, file, elapsed, stages, grid_reason })
 }
@@ -147,15 +150,16 @@ const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
 
 fn simulate(
     loaded: &LoadedScene,
-    plan: &EffectPlan,
+    plan: &mut EffectPlan,
     options: &BakeOptions,
     watch: &Watch,
     files: SumFiles<'_>,
 ) -> Result<BakeResult, Failure> {
     let LoadedScene { scene, flat } = loaded;
     if files.resume.is_none() && files.checkpoint.is_none() {
-        return ivg_bake::bake(scene, flat, plan, options, watch).map_err(Failure::new);
+        return ivg_bake::bake_measured(scene, flat, plan, options, watch).map_err(Failure::new);
     }
+    ivg_bake::measure_reflections(scene, flat, plan, options).map_err(Failure::new)?;
     let from = files.resume.map(read_sums).transpose()?;
     let mut written = Instant::now();
     let mut failure = None;
@@ -184,10 +188,11 @@ pub(crate) fn shard(loaded: &LoadedScene, settings: &BakeSettings, shard: Shard)
     loaded.scene.require_light().map_err(Failure::new)?;
     let mut options = bake_options(settings);
     decide_grid(loaded, settings, &mut options)?;
-    let (plan, _) = plan(loaded, planning(settings.effects), &pilot_options(&options))?;
+    let LoadedScene { scene, flat } = loaded;
+    let mut plan = analysed(loaded, planning(settings.effects));
+    ivg_bake::measure_reflections(scene, flat, &mut plan, &options).map_err(Failure::new)?;
     report_unsupported(&loaded.scene, &plan);
     let watch = Watch::new(Instant::now(), None, &options);
-    let LoadedScene { scene, flat } = loaded;
     let sums = ivg_bake::accumulate(scene, flat, &plan, &options, (shard, None), &watch, &mut |_| {});
     watch.finish();
     Ok(sums.map_err(Failure::new)?.to_bytes())
@@ -208,19 +213,17 @@ const PHOTONS: u64 = 1_000_000;
 /// Photons where accuracy or time ends the bake: the sums hold so many with up to 127 reflections.
 const MOST_PHOTONS: u64 = 1 << 33;
 
-/// Options of the bake that a pilot estimates: of the usual length where only accuracy or time ends it.
-fn pilot_options(options: &BakeOptions) -> BakeOptions {
-    let photons = if options.photons == MOST_PHOTONS { PHOTONS } else { options.photons };
-    let estimator = match options.estimator {
-        // Its time is not told; the reflections and effects are those of photons.
-        Estimator::Gather => Estimator::TrackLength,
-        of_photons => of_photons,
-    };
-    BakeOptions { photons, estimator, accuracy: None, ..options.clone() }
-}
-
 /// Most vertices of a grid that the scene decides.
 const AUTO_VERTICES: u64 = 1 << 18;
+
+/// Reflections of the photons that tell how far light flies and how it changes.
+const AUTO_BOUNCES: u32 = 16;
+
+/// Share of a time that photons are traced in: the rest is for what comes before and after.
+const TRACING_SHARE: f64 = 0.5;
+
+/// Noise that a grid chosen for a time may have, where no accuracy is asked for.
+const TIMED_NOISE: f64 = 0.02;
 
 /// Decides the grid, if the scene is to, and says why.
 fn decide_grid(
@@ -229,22 +232,73 @@ fn decide_grid(
     options: &mut BakeOptions,
 ) -> Result<Option<String>, Failure> {
     if settings.grid != GridArgument::Auto {
+        if settings.budget.is_some() {
+            return Err(Failure::usage("--budget chooses the grid; give --grid auto with it"));
+        }
         return Ok(None);
     }
     let LoadedScene { scene, flat } = loaded;
-    let mut plan = plan::analyse(scene, flat, &planning(settings.effects));
-    plan.max_bounces = AUTO_BOUNCES;
-    let found = ivg_bake::resolution(scene, flat, &plan, options, AUTO_VERTICES).map_err(Failure::new)?;
+    let mut plan = analysed(loaded, planning_for(settings.effects, settings.accuracy));
+    plan.max_bounces = plan.max_bounces.min(AUTO_BOUNCES);
+    let photons = match settings.time {
+        Some(seconds) => {
+            let timed = BakeOptions { photons: PHOTONS, accuracy: None, ..options.clone() };
+            let timed = BakeOptions { estimator: Estimator::TrackLength, ..timed };
+            let report = ivg_bake::pilot(scene, flat, &mut plan.clone(), &timed).map_err(Failure::new)?;
+            let each = (report.ray_seconds + report.deposit_seconds) / PHOTONS as f64;
+            let threads = options.threads.unwrap_or_else(cores) as f64;
+            let photons = (TRACING_SHARE * seconds * threads / each.max(f64::MIN_POSITIVE)) as u64;
+            Some((photons, settings.accuracy.unwrap_or(TIMED_NOISE)))
+        }
+        None => None,
+    };
+    let fits = |dims| settings.budget.is_none_or(|budget| file_bytes(dims, settings, scene) <= budget);
+    let limits = ResolutionLimits { vertices: AUTO_VERTICES, photons, fits: &fits };
+    let found = ivg_bake::resolution(scene, flat, &plan, options, &limits).map_err(Failure::new)?;
     options.dims = found.dims;
     Ok(Some(found.reason()))
 }
 
-/// Reflections of the photons that tell how far light flies.
-const AUTO_BOUNCES: u32 = 16;
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// The most bytes that the file of a grid takes, whatever it holds.
+fn file_bytes(dims: [u16; 3], settings: &BakeSettings, scene: &Scene) -> u64 {
+    // Header, directory, the metadata with numbers of any length, the corners and what frames them.
+    const APART: u64 = 4096;
+    // Each record's frame, and each light's entry besides its name.
+    const FRAME: u64 = 64;
+    // A list of vertices names each in so many bytes at most: seven bits in each.
+    const NAMED: u64 = 3;
+    let [vertices, longest] =
+        [dims.iter().map(|&n| u64::from(n)).product::<u64>(), u64::from(dims.into_iter().max().unwrap_or(1))];
+    let bundle = (u64::from(settings.per_slice) * longest).clamp(1, vertices);
+    // Bundles of importance grow from 32 vertices by a quarter each: fewer than a hundred before they are as large as any.
+    let (bundles, named) = match settings.order {
+        Order::Explicit => (vertices.div_ceil(bundle) + 100, NAMED),
+        _ => (vertices.div_ceil(bundle) + longest, 0),
+    };
+    let names =
+        scene.lights.iter().map(|light| light.name.len()).chain(scene.materials.iter().map(|m| m.name.len()));
+    let lights: u64 = names.map(|name| name as u64 + FRAME).sum();
+    // Validity and blocked edges take two bytes at most.
+    vertices * (settings.encoding.bytes_per_vertex() + 2 + named) + bundles * FRAME + lights + APART
+}
+
+fn analysed(loaded: &LoadedScene, planning: PlanOptions) -> EffectPlan {
+    plan::analyse(&loaded.scene, &loaded.flat, &planning)
+}
 
 /// What a plan is made with, where no error is asked for.
 pub(crate) fn planning(effects: EffectsArgument) -> PlanOptions {
     PlanOptions { all_effects: effects == EffectsArgument::All, ..PlanOptions::default() }
+}
+
+/// What a plan is made with. With an accuracy, light is followed until what is cut is far below it.
+pub(crate) fn planning_for(effects: EffectsArgument, accuracy: Option<f64>) -> PlanOptions {
+    let usual = planning(effects);
+    PlanOptions { energy_cutoff: accuracy.map_or(usual.energy_cutoff, |asked| CUTOFF_SHARE * asked), ..usual }
 }
 
 /// The options of the baker that the arguments name.

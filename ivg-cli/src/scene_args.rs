@@ -150,6 +150,18 @@ pub(crate) fn percent(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number of bytes, with a decimal unit or none.
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, f64); 4] = [("kB", 1e3), ("MB", 1e6), ("GB", 1e9), ("B", 1.0)];
+    let (number, unit) = (UNITS.iter())
+        .find_map(|(name, bytes)| text.strip_suffix(name).map(|number| (number, *bytes)))
+        .unwrap_or((text, 1.0));
+    match number.trim().parse::<f64>() {
+        Ok(value) if value > 0.0 && value * unit < 1e15 => Ok((value * unit) as u64),
+        _ => Err(format!("'{text}' is not a size; give bytes, or kB, MB or GB, such as 500kB")),
+    }
+}
+
 /// A number of seconds above zero, up to a year.
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     const YEAR: f64 = 365.0 * 86_400.0;

@@ -98,6 +98,11 @@ fn shards_merge_and_checkpoints_resume_to_the_same_bytes() {
     fails(&["merge", "1.acc", "1.acc", "-o", "x.ivg"], "shard 1 of 3 is there twice");
     place.write("cut.acc", &place.read("1.acc")[..500]);
     fails(&["merge", "cut.acc", "-o", "x.ivg"], "cut.acc: not a usable accumulator file");
+    for file in ["--resume", "--checkpoint"] {
+        let output = place.run(&["bake", "room.obj", "-o", "x.ivg", "--accuracy", "9%", file, "x.acc"]);
+        let said = text(&output.stderr);
+        assert!(output.status.code() == Some(2) && said.contains("go on with --resume"), "{said}");
+    }
     let output = place.run(&["bake", "room.obj", "-o", "x.acc", "--shard", "4/3"]);
     assert_eq!(output.status.code(), Some(2));
 }
@@ -110,8 +115,39 @@ fn the_scene_decides_the_grid_and_says_why() {
     let report = json(&place.ok(&[&auto[..], &["--json"]].concat()));
     let dims: Vec<u64> =
         report["dims"].as_array().expect("a list").iter().filter_map(Value::as_u64).collect();
-    assert!(dims.iter().all(|n| (10..24).contains(n)), "{report}");
-    assert!(said.contains("an eighth of that") && said.contains(&format!("grid {}x", dims[0])), "{said}");
+    assert!(dims.iter().all(|n| (4..40).contains(n)), "{report}");
+    let reason = said.lines().find(|line| line.starts_with("grid ")).expect("a line about the grid");
+    assert!(reason.contains("over an eighth of that light changes by"), "{said}");
+    assert!(reason.starts_with(&format!("grid {}x", dims[0])), "{said}");
     let output = place.run(&["bake", "room.obj", "-o", "x.ivg", "--grid", "automatic"]);
     assert!(output.status.code() == Some(2) && text(&output.stderr).contains("or auto"));
+}
+
+#[test]
+fn files_keep_to_their_budget_and_short_times_make_coarse_grids() {
+    let place = Workplace::with_room();
+    let auto = ["bake", "room.obj", "-o", "x.ivg", "--grid", "auto", "--json"];
+    let free = json(&place.ok(&[&auto[..], &["--photons", "2000"]].concat()));
+    let count = |report: &Value| report["vertices"].as_u64().expect("a count");
+    for (encoding, order) in [("packed-oct24", "slices"), ("vectors-f32", "explicit"), ("sh2-28", "octree")] {
+        let budget = ["--photons", "2000", "--budget", "20kB", "--encoding", encoding, "--order", order];
+        let report = json(&place.ok(&[&auto[..], &budget].concat()));
+        let bytes = place.read("x.ivg").len();
+        assert!(bytes <= 20_000 && count(&report) < count(&free), "{bytes} {report}");
+        let reason = report["grid_reason"].as_str().expect("a reason");
+        assert!(reason.contains("the file is to be no larger"), "{reason}");
+    }
+    let short = json(&place.ok(&[&auto[..], &["--time", "0.001"]].concat()));
+    assert!(count(&short) < count(&free), "{short}");
+    assert!(short["grid_reason"].as_str().expect("a reason").contains("there is time for"), "{short}");
+    for (arguments, said) in [
+        (["--budget", "100B"].as_slice(), "even the smallest grid"),
+        (&["--budget", "much"], "give bytes, or kB, MB or GB"),
+    ] {
+        let output = place.run(&[&auto[..], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(text(&output.stderr).contains(said), "{}", text(&output.stderr));
+    }
+    let output = place.run(&["bake", "room.obj", "-o", "x.ivg", "--budget", "1MB"]);
+    assert!(text(&output.stderr).contains("give --grid auto"), "{}", text(&output.stderr));
 }

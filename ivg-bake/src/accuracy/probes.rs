@@ -3,8 +3,9 @@
 //! A baked vertex is the mean over its dual cell, and light beyond the last reflection followed is missing: both are the same
 //! in every batch. So light is gathered at some vertices by path tracing, and of the squared difference the variance of both
 //! sides is subtracted. What is left is the squared bias, whose mean over all vertices is estimated from strata: vertices
-//! whose cells geometry touches and those that lie free, each in three classes by how much the light changes to their
-//! neighbours, so that the few vertices where much of the bias is are not missed.
+//! whose cells geometry touches and those that lie free, each in classes by how much the light changes to their
+//! neighbours, so that the few vertices where much of the bias is are not missed. Of a large grid the classes are finer: what it
+//! costs to gather the worst of them grows with the square of their number, since their variances add up.
 
 use glam::Vec3;
 
@@ -19,8 +20,14 @@ use crate::workers::{Workers, map};
 /// Shares of the vertices in the classes by change of light, the flattest first.
 const CLASSES: [f64; 3] = [0.6, 0.3, 0.1];
 
-/// Strata: touched or free, times the classes.
-pub(crate) const STRATA: usize = 2 * CLASSES.len();
+/// The same where there are many vertices: with few, fine strata hold too few to tell their bias.
+const FINE_CLASSES: [f64; 6] = [0.55, 0.25, 0.1, 0.06, 0.03, 0.01];
+
+/// Vertices from which on classes are fine: a hundred in the smallest, where a quarter of all are touched.
+const MANY: usize = 8192;
+
+/// Probes of a stratum from which on those of all tell where more are needed.
+const FEWEST: usize = 4;
 
 /// Vertices of which one is to be drawn.
 #[derive(Debug)]
@@ -40,6 +47,17 @@ struct Probe {
     stratum: usize,
     axes: [f64; AXES],
     variance: f64,
+    paths: u32,
+}
+
+/// The stratum with most bias.
+#[derive(Debug)]
+pub(crate) struct Worst {
+    pub(crate) vertices: Vec<usize>,
+    /// Mean squared bias of one of them \[(W/m²)²\].
+    pub(crate) squared: f64,
+    /// Mean variance of one path from one of them \[(W/m²)²\].
+    pub(crate) variance_a_path: f64,
 }
 
 /// Vertices at which light has been gathered.
@@ -74,29 +92,59 @@ impl Probes {
         touched: impl Fn(usize) -> bool,
         change: impl Fn(usize) -> f64,
     ) -> Self {
-        let mut strata: Vec<Stratum> =
-            (0..STRATA).map(|_| Stratum { vertices: Vec::new(), gathered: 0, counts: true }).collect();
         let mut kinds = [Vec::new(), Vec::new()];
         vertices.for_each(|vertex| kinds[usize::from(touched(vertex))].push((change(vertex), vertex)));
-        for (kind, mut ranked) in kinds.into_iter().enumerate() {
+        let many = kinds[0].len() + kinds[1].len() >= MANY;
+        let classes: &[f64] = if many { &FINE_CLASSES } else { &CLASSES };
+        let mut strata = Vec::with_capacity(2 * classes.len());
+        for mut ranked in kinds {
             ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let (mut below, mut first) = (0.0, 0);
-            for (class, share) in CLASSES.into_iter().enumerate() {
+            for share in classes {
                 below += share;
                 let last = ((below * ranked.len() as f64).round() as usize).clamp(first, ranked.len());
-                let stratum = &mut strata[kind * CLASSES.len() + class].vertices;
-                stratum.extend(ranked[first..last].iter().map(|&(_, vertex)| vertex));
-                shuffle(stratum, seed);
+                let mut vertices: Vec<usize> =
+                    ranked[first..last].iter().map(|&(_, vertex)| vertex).collect();
+                shuffle(&mut vertices, seed);
+                strata.push(Stratum { vertices, gathered: 0, counts: true });
                 first = last;
             }
         }
         Self { strata, probes: Vec::new(), paths: 0 }
     }
 
-    /// Gathers at `more` further vertices, divided evenly among the strata.
+    /// How many of `more` further vertices each stratum is to get: one half of them evenly, the other in proportion to how
+    /// many vertices it has and how much their biases differ (J. Neyman, "On the two different aspects of the representative
+    /// method", 1934). Arguments as of [`Probes::bias`].
+    pub(crate) fn divided(
+        &self,
+        more: usize,
+        baked: impl Fn(usize) -> Axes,
+        variance: impl Fn(usize) -> f64,
+    ) -> Vec<usize> {
+        let counting = |stratum: &Stratum| stratum.counts && stratum.gathered < stratum.vertices.len();
+        let count = self.strata.iter().filter(|stratum| counting(stratum)).count().max(1);
+        let spreads: Vec<f64> = (self.strata.iter().enumerate())
+            .map(|(number, stratum)| {
+                let squares = self.squares(number, &baked, &variance);
+                if counting(stratum) { stratum.vertices.len() as f64 * spread(&squares).sqrt() } else { 0.0 }
+            })
+            .collect();
+        let all: f64 = spreads.iter().sum();
+        let known = self.strata.iter().all(|stratum| !counting(stratum) || stratum.gathered >= FEWEST);
+        let evenly = if known && all > 0.0 { 0.5 } else { 1.0 };
+        (self.strata.iter().zip(spreads))
+            .map(|(stratum, spread)| {
+                let share = evenly / count as f64 + if evenly < 1.0 { 0.5 * spread / all } else { 0.0 };
+                if counting(stratum) { (more as f64 * share).ceil() as usize } else { 0 }
+            })
+            .collect()
+    }
+
+    /// Gathers at further vertices, so many of each stratum.
     pub(crate) fn gather<V: Held>(
         &mut self,
-        more: usize,
+        more: &[usize],
         stage: &Stage<'_>,
         eyes: &[Vec3],
         seed: u64,
@@ -104,8 +152,8 @@ impl Probes {
         workers: &Workers<'_>,
     ) -> Result<(), BakeError> {
         let mut chosen = Vec::new();
-        for (number, stratum) in self.strata.iter_mut().enumerate().filter(|(_, s)| s.counts) {
-            let last = (stratum.gathered + more.div_ceil(STRATA)).min(stratum.vertices.len());
+        for (number, stratum) in self.strata.iter_mut().enumerate() {
+            let last = (stratum.gathered + more[number]).min(stratum.vertices.len());
             chosen.extend(stratum.vertices[stratum.gathered..last].iter().map(|&vertex| (vertex, number)));
             stratum.gathered = last;
         }
@@ -115,28 +163,35 @@ impl Probes {
         })?;
         for ((vertex, stratum), gather) in chosen.into_iter().zip(gathers) {
             self.paths += u64::from(gather.paths);
-            let (axes, variance) = (gather.axes, gather.variance);
-            self.probes.push(Probe { vertex, stratum, axes, variance });
+            let (axes, variance, paths) = (gather.axes, gather.variance, gather.paths);
+            self.probes.push(Probe { vertex, stratum, axes, variance, paths });
         }
         Ok(())
     }
 
-    /// The vertices of the stratum with the largest mean squared bias, which no longer counts from now on; `None` if none
-    /// counts. Arguments as of [`Probes::bias`].
+    /// The stratum with the largest mean squared bias, which no longer counts from now on; `None` if none counts or shows any.
+    /// Arguments as of [`Probes::bias`].
     pub(crate) fn take_worst(
         &mut self,
         baked: impl Fn(usize) -> Axes,
         variance: impl Fn(usize) -> f64,
-    ) -> Option<Vec<usize>> {
-        let counting = (0..STRATA).filter(|&n| self.strata[n].counts && self.strata[n].gathered > 0);
+    ) -> Option<Worst> {
+        let counting =
+            (0..self.strata.len()).filter(|&n| self.strata[n].counts && self.strata[n].gathered > 0);
         let mean = |number: usize| {
             let squares = self.squares(number, &baked, &variance);
             squares.iter().sum::<f64>() / squares.len() as f64
         };
-        let (worst, _) = counting.map(|n| (n, mean(n))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (worst, squared) = counting.map(|n| (n, mean(n))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        if squared <= 0.0 {
+            return None;
+        }
+        let probes = || self.probes.iter().filter(|probe| probe.stratum == worst);
+        let variances: f64 = probes().map(|probe| probe.variance * f64::from(probe.paths)).sum();
+        let variance_a_path = variances / probes().count() as f64;
         let stratum = &mut self.strata[worst];
         stratum.counts = false;
-        Some(stratum.vertices.clone())
+        Some(Worst { vertices: stratum.vertices.clone(), squared, variance_a_path })
     }
 
     /// Squared biases at the probes of a stratum.
@@ -182,8 +237,7 @@ impl Probes {
             let mean = squares.iter().sum::<f64>() / count;
             bias.squared += all * mean;
             if squares.len() > 1 {
-                let spread = squares.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0);
-                bias.standard_error += all * all * spread / count * (1.0 - count / all);
+                bias.standard_error += all * all * spread(&squares) / count * (1.0 - count / all);
                 bias.freedom += count - 1.0;
             }
         }
@@ -191,6 +245,13 @@ impl Probes {
         bias.freedom = bias.freedom.max(1.0);
         bias
     }
+}
+
+/// The variance of numbers, estimated from some of them; 0 of less than two.
+fn spread(numbers: &[f64]) -> f64 {
+    let count = numbers.len() as f64;
+    let mean = numbers.iter().sum::<f64>() / count;
+    if count > 1.0 { numbers.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0) } else { 0.0 }
 }
 
 /// The sum of squared changes from a vertex to its neighbours `next`.

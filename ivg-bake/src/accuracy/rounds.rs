@@ -27,16 +27,19 @@ use crate::{BakeError, BakeStage};
 const BATCHES: u64 = 32;
 
 /// Largest and smallest number of photons after a round, relative to that before it.
-const GROWTH: (f64, f64) = (1.25, 4.0);
+const GROWTH: (f64, f64) = (1.1, 4.0);
 
 /// More photons than seem needed, so that chance does not make another round necessary.
-const MARGIN: f64 = 1.05;
+const MARGIN: f64 = 1.02;
 
 /// Vertices that the bias is measured at first, and at most.
 const PROBES: (usize, usize) = (96, 768);
 
 /// Noise at which bias is first looked at, relative to the error asked for.
 const NOISE_BEFORE_PROBES: f64 = 2.0;
+
+/// Bias that seems below this share of what is bearable is measured at more vertices before any are gathered.
+const UNCERTAIN: f64 = 0.7;
 
 /// Most paths of a vertex that is gathered to measure bias, whose variance is subtracted.
 const PROBE_PATHS: u32 = 1 << 15;
@@ -45,7 +48,7 @@ const PROBE_PATHS: u32 = 1 << 15;
 const MOST_PATHS: u32 = 1 << 17;
 
 /// Share of the squared error asked for that bias may take before something else than photons is tried.
-const MOST_BIAS: f64 = 0.5;
+const MOST_BIAS: f64 = 0.4;
 
 /// A vertex is too noisy beyond so many times the error asked for, relative to its own brightness.
 const VERTEX_NOISE: f64 = 4.0;
@@ -53,8 +56,20 @@ const VERTEX_NOISE: f64 = 4.0;
 /// Brightness of a vertex counts as at least this share of the grid's root mean square.
 const DIMMEST: f64 = 0.01;
 
-/// Share of the squared error asked for that the vertices of a stratum may add when they are gathered.
-const GATHERED_NOISE: f64 = 0.12;
+/// The variance of a vertex that is gathered into the grid because it is too biased, relative to the mean squared error asked for:
+/// where a tenth of all are, that is three tenths of the whole.
+const GATHERED_NOISE: f64 = 3.0;
+
+/// And at most this share of the squared bias that it had, which counts as half of the mean error asked for where it is less.
+const GATHERED_SHARE: f64 = 0.25;
+
+/// Share of the squared error asked for that all vertices gathered for their bias may have as noise, and the share of what is left of
+/// that which the next stratum takes.
+const GATHERED_IN_ALL: (f64, f64) = (0.5, 0.25);
+
+/// Vertices that the bias is measured at anew after some have been gathered into the grid: those that are left are left because theirs
+/// seemed small.
+const PROBES_AFTER: usize = 48;
 
 /// Vertices gathered between two questions whether the time is up.
 const BLOCK: usize = 256;
@@ -147,12 +162,14 @@ where
             // What the noise of gathered vertices leaves: no photon makes that smaller.
             let bearable = |look: &Look| MOST_BIAS * (allowed - look.gathered).max(0.0);
             while self.probes.is_some() && look.bias_bound > bearable(&look) && !last {
-                let uncertain = look.bias < 0.5 * bearable(&look);
+                let uncertain = look.bias < UNCERTAIN * bearable(&look);
                 if uncertain && self.probes.as_ref().is_some_and(|p| p.can_grow() && p.len() < PROBES.1) {
                     let more = self.probes.as_ref().map_or(0, Probes::len);
                     self.probe(more, &look)?;
                 } else if !self.gather_worst(&look)? {
                     break;
+                } else {
+                    self.probe(PROBES_AFTER, &look)?;
                 }
                 look = self.look_again()?;
             }
@@ -277,8 +294,11 @@ where
             Some(probes) => probes,
             None => self.strata()?,
         };
+        let (photons, unit) = (self.tally.photons() as f64, self.unit());
+        let more =
+            probes.divided(more, self.axes_of(), |vertex| self.noise.of_vertex(vertex) * unit * photons);
         let (stage, eyes) = (&job.ready.stage, &job.surroundings.eyes);
-        probes.gather::<E::Value>(more, stage, eyes, job.seed(), enough, &job.workers)?;
+        probes.gather::<E::Value>(&more, stage, eyes, job.seed(), enough, &job.workers)?;
         self.probes = Some(probes);
         Ok(())
     }
@@ -304,10 +324,17 @@ where
             probes.take_worst(self.axes_of(), |vertex| self.noise.of_vertex(vertex) * unit * photons)
         });
         self.probes = probes;
-        let Some(vertices) = worst else { return Ok(false) };
-        let variance = GATHERED_NOISE * self.asked.powi(2) * look.signal / vertices.len().max(1) as f64;
-        let enough = Enough::Variance { variance, most: MOST_PATHS };
-        let wanted: Vec<_> = vertices.into_iter().map(|vertex| (vertex, enough)).collect();
+        let Some(worst) = worst else { return Ok(false) };
+        let allowed = self.asked.powi(2) * look.signal;
+        let mean = allowed / self.job.counted().count().max(1) as f64;
+        let left = (GATHERED_IN_ALL.0 * allowed - look.gathered).max(0.0);
+        let variance = (GATHERED_NOISE * mean)
+            .min(GATHERED_SHARE * worst.squared.max(0.5 * mean))
+            .min(GATHERED_IN_ALL.1 * left / worst.vertices.len() as f64);
+        // In darkness nothing is divided by nothing.
+        let paths = (worst.variance_a_path / variance).min(f64::from(MOST_PATHS)).max(0.0) as u32;
+        let wanted: Vec<_> =
+            worst.vertices.into_iter().map(|vertex| (vertex, Enough::Roughly(paths))).collect();
         let done = self.gather(&wanted)?;
         self.biased += done;
         Ok(done == wanted.len())

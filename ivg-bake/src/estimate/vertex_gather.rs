@@ -37,6 +37,9 @@ const SEED: u64 = 0x9d2c_5680_6a09_e667;
 pub(crate) enum Enough {
     /// So many paths, rounded up to whole batches and [`FEWEST_PATHS`].
     Paths(u32),
+    /// About so many paths, of which the variance of one vertex is told roughly and that of many well: rounded up to whole
+    /// batches, at least two.
+    Roughly(u32),
     /// Until the sum of the variances of the 18 irradiances along the axes is about `variance` \[(W/m²)²\], with `most`
     /// paths at most.
     Variance {
@@ -83,11 +86,10 @@ impl Stage<'_> {
             mean
         };
         let variance = |mean: &Mean<AXES>| mean.standard_error().iter().map(|e| e * e).sum::<f64>();
+        let mut fixed = |batches: u32| (batches, variance(&trace(0..batches)));
         let (batches, variance) = match enough {
-            Enough::Paths(paths) => {
-                let batches = paths.max(FEWEST_PATHS).div_ceil(PATHS);
-                (batches, variance(&trace(0..batches)))
-            }
+            Enough::Paths(paths) => fixed(paths.max(FEWEST_PATHS).div_ceil(PATHS)),
+            Enough::Roughly(paths) => fixed(paths.div_ceil(PATHS).max(2)),
             Enough::Variance { variance: wanted, most } => {
                 let of_first = variance(&trace(0..BATCHES));
                 let most = f64::from(most / PATHS);

@@ -1,9 +1,9 @@
 use glam::Vec3;
 use ivg_scene::{Effect, Need, PlannedEffect};
 
-use super::{bounces_worth_following, pilot};
-use crate::BakeOptions;
+use super::{bounces_worth_following, measure_reflections, pilot};
 use crate::cases::{SceneBuilder, plan};
+use crate::{BakeOptions, Estimator, Silent, bake, bake_measured};
 
 #[test]
 fn bounces_stop_where_the_rest_is_below_the_cutoff() {
@@ -49,4 +49,28 @@ fn a_pilot_finds_the_reflections_of_a_furnace_and_fills_costs() {
     // The difference of two times, of which nothing is known but that it is not negative.
     let mirrors = cost(Effect::Mirrors).expect("what it would cost is measured");
     assert!(mirrors.seconds >= 0.0 && mirrors.energy_share == 0.0, "{mirrors:?}");
+}
+
+/// A pilot of path tracing tells energies as that of photons does, and a bake follows as many reflections as either finds.
+#[test]
+fn path_tracing_has_a_pilot_and_bakes_follow_what_it_finds() {
+    let mut builder = SceneBuilder::default();
+    let wall = builder.material(0.6, 1.0, false);
+    builder.cuboid(Vec3::ZERO, Vec3::ONE, wall, true);
+    let (scene, flat) = builder.build();
+    let options = BakeOptions { dims: [4; 3], photons: 3_000, paths: 512, ..BakeOptions::default() };
+    let gather = BakeOptions { estimator: Estimator::Gather, ..options.clone() };
+    let (mut a, mut b) = (plan(&scene, 999), plan(&scene, 999));
+    let photons = pilot(&scene, &flat, &mut a, &options).unwrap();
+    let paths = pilot(&scene, &flat, &mut b, &gather).unwrap();
+    assert_eq!(photons.energy_by_bounce, paths.energy_by_bounce);
+    assert!(paths.ray_seconds > 0.0 && paths.deposit_seconds == 0.0, "{paths:?}");
+    assert!(a.max_bounces == b.max_bounces && a.max_bounces < 64);
+    let mut c = plan(&scene, 64);
+    measure_reflections(&scene, &flat, &mut c, &options).unwrap();
+    assert_eq!(c.max_bounces, a.max_bounces);
+    let mut d = plan(&scene, 64);
+    let result = bake_measured(&scene, &flat, &mut d, &options, &Silent).unwrap();
+    assert_eq!(d.max_bounces, a.max_bounces);
+    assert_eq!(result, bake(&scene, &flat, &c, &options, &Silent).unwrap());
 }

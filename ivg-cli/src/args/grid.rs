@@ -11,10 +11,14 @@ use crate::scene_args::{Bounds, GridArgument};
 /// How a grid is baked.
 #[derive(Debug, Args)]
 pub(crate) struct BakeSettings {
-    /// Number of grid vertices along x, y and z; auto: a step of an eighth of the distance that light flies between surfaces,
-    /// with at most 262144 vertices.
+    /// Number of grid vertices along x, y and z; auto: as the scene asks for: from an eighth of the distance that light flies
+    /// between surfaces, finer or coarser along each axis by how much light changes along it, with at most 262144 vertices,
+    /// those that --budget leaves room for, and those that the photons of --time bring enough light to. The reason is printed.
     #[arg(long, value_name = "NXxNYxNZ", default_value = "16x16x16")]
     pub(crate) grid: GridArgument,
+    /// With --grid auto: the most bytes that the file may have, such as 500kB or 2MB.
+    #[arg(long, value_name = "BYTES", value_parser = crate::scene_args::bytes)]
+    pub(crate) budget: Option<u64>,
     /// First and last vertex of the grid, in metres; default: the scene's bounds and a margin.
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     pub(crate) bounds: Option<Bounds>,
@@ -22,7 +26,8 @@ pub(crate) struct BakeSettings {
     #[arg(long, value_name = "N", value_parser = crate::scene_args::count::<u64>)]
     pub(crate) photons: Option<u64>,
     /// Trace until the error of the grid is at most so much, such as 2% (root mean square of the irradiance along the axes,
-    /// relative, noise and bias together, with 95 % confidence), and say what was reached.
+    /// relative, noise and bias together, with 95 % confidence), and say what was reached. Light is followed until what is cut is
+    /// a tenth of that; without, until it is a hundredth of the light.
     #[arg(long, value_name = "PERCENT", value_parser = crate::scene_args::percent)]
     pub(crate) accuracy: Option<f64>,
     /// End early after so many seconds. The result then depends on how fast the machine is; the photons traced are printed

@@ -28,9 +28,15 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
         }
         return Ok(ExitCode::SUCCESS);
     }
+    let sums = SumFiles { resume: arguments.resume.as_deref(), checkpoint: arguments.checkpoint.as_deref() };
+    if arguments.bake.accuracy.is_some() && (sums.resume.is_some() || sums.checkpoint.is_some()) {
+        return Err(Failure::usage(
+            "a bake to an accuracy cannot be stopped and gone on with: sums do not hold the batches that tell its noise, nor the \
+             gathered light; give --accuracy in one run, with --time as a cap, or go on with --resume and a greater --photons",
+        ));
+    }
     files::require_extension(&arguments.out, &["ivg"])?;
     let loaded = LoadedScene::open(&arguments.scene)?;
-    let sums = SumFiles { resume: arguments.resume.as_deref(), checkpoint: arguments.checkpoint.as_deref() };
     let baked = baking::bake_with(&loaded, &arguments.bake, sums)?;
     files::write(&arguments.out, &baked.file)?;
     let lattice = baked.grid.lattice();
@@ -93,10 +99,12 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
     let emitted = sum(stats.emitted);
     if emitted > 0.0 {
         files::print(&format!(
-            "{emitted:.4} W emitted: {:.1} % absorbed, {:.1} % left the scene, {:.2} % cut after the last bounce\n",
+            "{emitted:.4} W emitted: {:.1} % absorbed, {:.1} % left the scene, {:.2} % lost: cut after {} bounces{}; nothing is clamped\n",
             100.0 * sum(stats.absorbed) / emitted,
             100.0 * sum(stats.escaped) / emitted,
             100.0 * sum(stats.cut) / emitted,
+            baked.plan.max_bounces,
+            if baked.accuracy.is_some() { " (the bias counts it)" } else { "" },
         ))?;
     }
     Ok(ExitCode::SUCCESS)

@@ -118,6 +118,7 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<ExitCode, Failure> {
 fn settings(arguments: &DemoArguments) -> BakeSettings {
     BakeSettings {
         grid: GridArgument::Size(arguments.grid),
+        budget: None,
         bounds: None,
         photons: Some(arguments.photons),
         accuracy: None,

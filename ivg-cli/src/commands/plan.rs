@@ -9,11 +9,17 @@ use crate::baking::{self, LoadedScene};
 use crate::failure::Failure;
 use crate::{files, table};
 
+/// Characters of a line.
+const LINE: usize = 100;
+
 pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
     let loaded = LoadedScene::open(&arguments.scene)?;
     let options = BakeOptions { photons: arguments.photons, ..BakeOptions::default() };
-    let planning =
-        PlanOptions { energy_cutoff: arguments.energy_cutoff, ..baking::planning(arguments.effects) };
+    let usual = baking::planning_for(arguments.effects, arguments.accuracy);
+    let planning = match arguments.energy_cutoff {
+        Some(energy_cutoff) => PlanOptions { energy_cutoff, ..usual },
+        None => usual,
+    };
     let (plan, pilot) = baking::plan(&loaded, planning, &options)?;
     if arguments.json {
         let effects: Vec<_> = plan
@@ -50,13 +56,13 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
         "{}: {} triangles\n\n{}",
         loaded.scene.name,
         loaded.flat.triangles.len(),
-        table::layout(&rows, &[2, 3])
+        table::layout_within(&rows, &[2, 3], LINE)
     ))?;
     match pilot {
         Some(pilot) => files::print(&format!(
-            "\nUp to {} bounces: the rest is below {} % of the light energy.\nCosts are for {} photons on a 16x16x16 grid, measured with {} photons; in brackets, what an effect left out would cost.\n",
+            "\nUp to {} bounces: the rest is below {} % of the light energy.\nCosts are for {} photons on a 16x16x16 grid, measured with {} photons;\nin brackets, what an effect left out would cost.\n",
             plan.max_bounces,
-            100.0 * plan.energy_cutoff,
+            1e-6 * (1e8 * plan.energy_cutoff).round(),
             arguments.photons,
             pilot.photons,
         ))?,

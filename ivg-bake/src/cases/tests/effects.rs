@@ -113,7 +113,10 @@ fn nothing_of_an_effect_that_is_left_out_is_simulated() {
         let mut plan = planned(&with, PlanOptions::default());
         assert!(plan.needs(effect), "{effect}");
         let found = baked(&with, &plan);
-        plan.effects.iter_mut().filter(|line| line.effect == effect).for_each(|line| line.need = Need::NotNeeded);
+        plan.effects
+            .iter_mut()
+            .filter(|line| line.effect == effect)
+            .for_each(|line| line.need = Need::NotNeeded);
         let plain = Material { albedo_texture: None, transmission: 0.0, specular: 0.0, ..material };
         let without = room(plain);
         let left_out = baked(&with, &plan);
@@ -139,7 +142,10 @@ fn shadows_are_looked_for_only_where_something_can_cast_one() {
     };
     let looking = |plan: &EffectPlan, need: Need| {
         let mut plan = plan.clone();
-        plan.effects.iter_mut().filter(|line| line.effect == Effect::Shadows).for_each(|line| line.need = need);
+        plan.effects
+            .iter_mut()
+            .filter(|line| line.effect == Effect::Shadows)
+            .for_each(|line| line.need = need);
         plan
     };
     let mut empty = SceneBuilder::default();
