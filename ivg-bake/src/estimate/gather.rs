@@ -225,7 +225,7 @@ impl Stage<'_> {
         let cos = side.dot(light.direction);
         if cos <= 0.0
             || (light.from_sky && !with_image)
-            || self.accel.occluded(origin, light.direction, light.distance)
+            || self.is_shadowed(origin, light.direction, light.distance)
         {
             return DVec3::ZERO;
         }
