@@ -2,6 +2,7 @@
 
 mod support;
 
+use conformance_runner::explain::explain;
 use conformance_runner::manifest::Suite;
 use conformance_runner::report;
 use conformance_runner::run::{Options, Results, Status, run};
@@ -137,4 +138,47 @@ fn both_ask_no_more_than_is_claimed() {
     assert_eq!(of("ivg/0110-octree-1x1x1/chunks-1"), Status::Failed);
     assert_eq!(of("ivg/0005-validity/prefix-144"), Status::NotClaimed);
     assert_eq!(of("pmesh/x-111-record-id"), Status::NotClaimed);
+}
+
+/// What `run.py` prints.
+fn printed(arguments: &[&str]) -> String {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("run.py");
+    let output = Command::new("python3").arg(script).args(arguments).output().expect("python3");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn both_explain_and_list_alike() {
+    let suite = Suite::open(&vectors()).unwrap();
+    for id in [
+        "ivg/0005-validity",
+        "ivg/x-303-step-zero",
+        "ivg/x-603-chunks/chunks-mixed",
+        "ivg/x-605-vertices",
+        "pmesh/x-502-coded-normal",
+        "pmesh/0005-seam/lod-4",
+        "pmesh/x-111-packets-swapped",
+        "numeric/oct24",
+    ] {
+        let text = explain(&suite, id).unwrap();
+        assert_eq!(text, printed(&["explain", id]));
+        // The text of every clause is found.
+        let clauses = &suite.test(id).unwrap().clauses;
+        assert!(clauses.iter().all(|clause| text.contains(&format!("\n**{clause}** ("))), "{text}");
+    }
+    let text = explain(&suite, "ivg/x-303-step-zero").unwrap();
+    assert!(text.contains("  header.step, at 88 (0x58):") || text.contains("header.step + "), "{text}");
+    assert!(explain(&suite, "ivg/none").is_err());
+    assert_eq!(report::list(&suite, Some("x-3*")), printed(&["list", "--only", "x-3*"]));
+    assert_eq!(report::list(&suite, Some("lod")), printed(&["list", "--only", "lod"]));
+}
+
+#[test]
+fn the_small_reader_in_python_passes_what_it_claims() {
+    let adapter = Path::new(env!("CARGO_MANIFEST_DIR")).join("adapters/python/adapter.py");
+    let results = Case::new(format!("python3 '{}'", adapter.display()), "ivg/0005*").in_rust();
+    assert_eq!(results.count(Status::Failed), 0, "{}", report::text(&results));
+    assert!(results.count(Status::Passed) > 10, "{}", report::summary(&results));
+    assert!(results.count(Status::NotClaimed) > 3, "{}", report::summary(&results));
 }
