@@ -124,9 +124,11 @@ fn in_field(twin: &[u8], file: &[u8], field: &Field, shift: Shift) -> Vec<Edit> 
     }
     if let (Some(first), Some(last)) = (runs.first().cloned(), runs.last().cloned()) {
         if places.len() <= WHOLE {
-            runs = Vec::from([0..places.len()]);
+            runs.clear();
+            runs.push(0..places.len());
         } else if runs.len() > RUNS {
-            runs = Vec::from([first.start..last.end]);
+            runs.clear();
+            runs.push(first.start..last.end);
         }
     }
     let mut edits = Vec::new();
