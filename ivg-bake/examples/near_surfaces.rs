@@ -18,16 +18,17 @@
 
 #![allow(clippy::print_stdout, reason = "printing is what this program is for")]
 
-use std::path::PathBuf;
-
-use common::{AnyError, numbers, open, plan_of};
-use glam::DVec3;
+use arguments::SceneArguments;
+use common::{AnyError, open, plan_of};
 use ivg_bake::reference::Oracle;
 use ivg_bake::{BakeOptions, Estimator, Silent, bake};
 use ivg_grid::IrradianceGrid;
 
 #[allow(dead_code, reason = "shared with other examples")]
 mod common;
+
+#[path = "common/arguments.rs"]
+mod arguments;
 
 /// Names of the classes, and of which of them each line is.
 const LINES: [(&str, &[usize]); 6] = [
@@ -49,25 +50,17 @@ struct Sums {
 }
 
 fn main() -> Result<(), AnyError> {
-    let (mut scene, mut lights) = (None::<PathBuf>, None::<PathBuf>);
-    let usual = BakeOptions::default();
-    let mut options = BakeOptions { dims: [32; 3], photons: 4_000_000, paths: 768, ..usual };
-    let mut arguments = std::env::args().skip(1);
-    while let Some(argument) = arguments.next() {
-        let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value"));
-        match argument.as_str() {
-            "--lights" => lights = Some(value()?.into()),
-            "--grid" => options.dims = numbers(&value()?, 'x')?,
-            "--bounds" => {
-                let [x0, y0, z0, x1, y1, z1] = numbers(&value()?, ',')?;
-                options.bounds = Some((DVec3::new(x0, y0, z0), DVec3::new(x1, y1, z1)));
-            }
-            "--photons" => options.photons = value()?.parse()?,
-            "--paths" => options.paths = value()?.parse()?,
-            option if option.starts_with("--") => return Err(format!("unknown option {option}").into()),
-            _ => scene = Some(argument.into()),
+    let usual = BakeOptions { dims: [32; 3], photons: 4_000_000, paths: 768, ..BakeOptions::default() };
+    let mut paths = usual.paths;
+    let arguments = SceneArguments::read(usual, |name, value| {
+        match name {
+            "--paths" => paths = value()?.parse()?,
+            _ => return Ok(false),
         }
-    }
+        Ok(true)
+    })?;
+    let SceneArguments { scene, lights, options } = arguments;
+    let options = BakeOptions { paths, ..options };
     let scene = open(scene.as_deref(), lights.as_deref())?;
     let flat = scene.flatten();
     let plan = plan_of(&scene);

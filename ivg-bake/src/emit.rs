@@ -29,6 +29,7 @@ pub(crate) struct Emitters {
     sky_share: f64,
     /// Metres per bake unit.
     metre: f64,
+    near: f32,
     world: Sphere,
 }
 
@@ -84,10 +85,16 @@ pub(crate) struct Arrival {
     pub(crate) cosine: f32,
     /// Whether it comes from the image of a sky.
     pub(crate) from_sky: bool,
+    /// Whether it comes from a surface that is [near](Emitters::near).
+    pub(crate) near: bool,
 }
 
 /// How much short of a light's surface a shadow ray ends, as a share of its length.
 const SHADOW_END: f32 = 1.0 - 1e-4;
+
+/// Surfaces that shine count as near at up to this share of the square root of all their area. Chosen from such a distance, the
+/// whole of them at once makes at most 16 times as bright as their radiance everywhere around would.
+const NEAR_SHARE: f64 = 0.25;
 
 impl Emitters {
     /// Collects the lights of a scene. `world` must contain all triangles and the lattice; `with_sky`: whether the sky
@@ -106,6 +113,7 @@ impl Emitters {
         let metre = 1.0 / space.scale();
         let disk = PI * f64::from(world.radius).powi(2) * metre * metre;
         let mut lights = Vec::new();
+        let mut shining = 0.0;
         let mut add = |kind: Kind, power: DVec3| {
             let brightest = power.max_element();
             if brightest > 0.0 {
@@ -115,6 +123,7 @@ impl Emitters {
         for index in (0u32..).take(surfaces.triangles().len()) {
             let material = surfaces.material(index);
             if material.emission != Vec3::ZERO {
+                shining += surfaces.area(index);
                 let area = surfaces.area(index) * metre * metre;
                 let (radiance, two_sided) = (material.emission, material.two_sided);
                 let (corners, normal) = (surfaces.triangles()[index as usize], surfaces.normal(index));
@@ -164,8 +173,15 @@ impl Emitters {
             sky_image,
             sky_share,
             metre,
+            near: (NEAR_SHARE * shining.sqrt()) as f32,
             world,
         })
+    }
+
+    /// Distance up to which a path had better meet surfaces that shine by chance: light from a place chosen on them grows
+    /// with the inverse square of the distance, without bound where a light touches a wall \[bake units\].
+    pub(crate) fn near(&self) -> f32 {
+        self.near
     }
 
     /// The power that a photon of share 1 stands for, times the photon count \[W\]: the sum over lights of the power of
@@ -278,6 +294,7 @@ impl Emitters {
             }
             Kind::Sky => return None,
         };
+        let near = matches!(light.kind, Kind::Triangle { .. }) && distance < self.near * SHADOW_END;
         let irradiance = (strength.as_dvec3() * (factor * weight)).as_vec3();
         let from_sky = matches!(light.kind, Kind::SkyImage);
         (irradiance.max_element() > 0.0).then_some(Arrival {
@@ -286,6 +303,7 @@ impl Emitters {
             irradiance,
             cosine,
             from_sky,
+            near,
         })
     }
 }

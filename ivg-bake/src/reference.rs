@@ -20,7 +20,7 @@ use crate::{BakeError, Monitor};
 
 mod brightness;
 
-pub use brightness::{Brightness, LitPlace, brightness_of};
+pub use brightness::{Brightness, DARKEST, LitPlace, brightness_of};
 
 /// A path tracer over a scene.
 #[derive(Debug)]

@@ -6,7 +6,8 @@ use glam::Vec3;
 use ivg_bake::reference::Oracle;
 use ivg_grid::IrradianceGrid;
 use ivg_scene::import::{self, ImportOptions};
-use ivg_scene::{Effect, EffectPlan, Material, Mesh, Need, Node, PlannedEffect, Scene};
+use ivg_scene::plan::{PlanOptions, analyse};
+use ivg_scene::{EffectPlan, Material, Mesh, Node, Scene};
 
 pub(crate) type AnyError = Box<dyn std::error::Error>;
 
@@ -36,23 +37,15 @@ fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// Diffuse indirect light, and textures and sky where the scene has them.
+/// Reflections that are followed at least: a thousandth of the light is left after so many in any room but one whose surfaces
+/// absorb next to nothing.
+const BOUNCES: u32 = 64;
+
+/// What the scene calls for, all of which the oracle has too, followed until a thousandth of the light is left.
 pub(crate) fn plan_of(scene: &Scene) -> EffectPlan {
-    let planned = |effect, needed| PlannedEffect {
-        effect,
-        need: if needed { Need::Needed } else { Need::NotNeeded },
-        reason: String::new(),
-        cost: None,
-    };
-    EffectPlan {
-        effects: vec![
-            planned(Effect::DiffuseIndirect, true),
-            planned(Effect::Textures, !scene.textures.is_empty()),
-            planned(Effect::Sky, scene.sky.is_some()),
-        ],
-        max_bounces: 64,
-        energy_cutoff: 1e-3,
-    }
+    let options = PlanOptions { energy_cutoff: 1e-3, ..PlanOptions::default() };
+    let plan = analyse(scene, &scene.flatten(), &options);
+    EffectPlan { max_bounces: BOUNCES, ..plan }
 }
 
 /// The scene at `path` with the lights of `lights`; the built-in room without a path.

@@ -17,6 +17,24 @@ const SURE_BOUNCES: u32 = 3;
 /// Reflections after which a path ends whatever it carries: only between surfaces of albedo 1 does one get this far.
 const MOST_BOUNCES: u32 = 4096;
 
+/// Reflections after which Russian roulette ends paths that surfaces alone would not end: one goes on with a probability of at most [`MOST_KEPT`], and carries so
+/// much more.
+const LONG_BOUNCES: u32 = 64;
+
+/// Largest probability of going on after [`LONG_BOUNCES`]. Between sheets of albedo 1 a path then lasts 64 reflections more on
+/// average, in which its weight grows e-fold, and not thousands.
+const MOST_KEPT: f64 = 1.0 - 1.0 / 64.0;
+
+/// The probability of going on after the `bounce`th reflection, by a surface whose brightest channel keeps `share`. What goes on is
+/// divided by it, so that the mean stays what it is (J. Arvo, D. Kirk, "Particle transport and image synthesis", 1990).
+fn kept(bounce: u32, share: f64) -> f64 {
+    match bounce {
+        0..=SURE_BOUNCES => 1.0,
+        _ if bounce <= LONG_BOUNCES => share.min(1.0),
+        _ => share.min(MOST_KEPT),
+    }
+}
+
 /// A mean and its standard error, of an array of numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Mean<const N: usize> {
@@ -190,8 +208,10 @@ impl Stage<'_> {
                 return radiance + throughput * (self.emitters.sky() + image).as_dvec3();
             };
             let point = self.surfaces.point(hit.triangle, hit.weights);
-            if bounce == 1 && direct {
-                radiance += self.surfaces.emission(hit.triangle, point.normal, -direction).as_dvec3();
+            // Later on lights have been sampled, but for those that are near.
+            if if bounce == 1 { direct } else { hit.distance < self.emitters.near() } {
+                let emission = self.surfaces.emission(hit.triangle, point.normal, -direction);
+                radiance += throughput * emission.as_dvec3();
             }
             let albedo = self.surfaces.albedo(&hit).as_dvec3();
             let side = point.facing(-direction);
@@ -206,25 +226,24 @@ impl Stage<'_> {
                 return radiance + throughput * (known.irradiance)(origin, side).as_dvec3() / PI;
             }
             let u = stream.uniforms(bounce, Purpose::Reflection);
-            if bounce > SURE_BOUNCES {
-                let kept = albedo.max_element().min(1.0);
-                if f64::from(u[2]) >= kept {
-                    return radiance;
-                }
-                throughput /= kept;
+            let kept = kept(bounce, albedo.max_element());
+            if f64::from(u[2]) >= kept {
+                return radiance;
             }
+            throughput /= kept;
             direction = hemisphere::cosine(side, [u[0], u[1]]);
         }
         radiance
     }
 
-    /// One sample of the direct irradiance of a surface with unit normal `side`, without an even sky and, on wish, without the
-    /// image of one \[W/m²\].
-    fn direct(&self, origin: Vec3, side: Vec3, (stream, step): (&Stream, u32), with_image: bool) -> DVec3 {
+    /// One sample of the direct irradiance of a surface with unit normal `side`, without an even sky: of a path that
+    /// `goes_on` without surfaces that are near, which it meets by chance; of another without the image of a sky, which is in what is
+    /// known \[W/m²\].
+    fn direct(&self, origin: Vec3, side: Vec3, (stream, step): (&Stream, u32), goes_on: bool) -> DVec3 {
         let Some(light) = self.emitters.arrive(origin, stream, step) else { return DVec3::ZERO };
         let cos = side.dot(light.direction);
         if cos <= 0.0
-            || (light.from_sky && !with_image)
+            || if goes_on { light.near } else { light.from_sky }
             || self.is_shadowed(origin, light.direction, light.distance)
         {
             return DVec3::ZERO;

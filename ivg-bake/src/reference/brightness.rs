@@ -2,10 +2,31 @@
 
 use glam::{DVec3, Vec3};
 use ivg_format::Lattice;
-use ivg_grid::{FillOptions, IrradianceGrid, Reconstruction, SURFACE_BIAS, SpatialFilter, fill};
+use ivg_grid::{
+    FillOptions, IrradianceGrid, Reconstruction, SURFACE_BIAS, SpatialFilter, VertexValues, fill,
+};
 
 use super::{Oracle, Sampling};
+use crate::sampling::hemisphere;
+use crate::sampling::rng::{Purpose, Stream};
+use crate::validity::ASIDE;
 use crate::{BakeError, Monitor};
+
+/// Seed of the pixels: the same scene and grid are always looked at in the same places.
+const VIEW_SEED: u64 = 0;
+
+/// Points that are tried until one is in the open.
+const LOOKS: u32 = 64;
+
+/// The least difference of radiance that an 8-bit sRGB picture shows, near black, relative to white: a code, on the straight part of the curve (IEC 61966-2-1).
+const SRGB_CODE: f64 = 1.0 / (255.0 * 12.92);
+
+/// What the mean of a picture is exposed to, relative to white: the middle grey of photography.
+const MIDDLE_GREY: f64 = 0.18;
+
+/// Share of the mean light below which a part's light is not what its error is relative to: an error of a tenth of so little is
+/// one code of an 8-bit sRGB picture whose mean is middle grey, and smaller ones do not show. 1.7 %.
+pub const DARKEST: f64 = 10.0 * SRGB_CODE / MIDDLE_GREY;
 
 /// Light of a part of the scene's surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,13 +58,20 @@ pub struct LitPlace {
     pub traced: f64,
     /// Standard error of `traced` \[W/m²\].
     pub error: f64,
-    /// Whether a vertex of the grid that light reaches sees it: one that is valid, in front of the surface, one of the
-    /// 4 × 4 × 4 around the place, and with nothing in between.
-    pub seen: bool,
 }
 
-/// What [`Oracle::brightness`] makes of places, of those that are [seen](LitPlace::seen): all together, then those in each of `boxes`³ equal boxes of the lattice's
-/// bounds that has any.
+impl Brightness {
+    /// How far the part is off: the difference of baked and traced light, relative to the traced light or, if that is more, to
+    /// [`DARKEST`] of the `mean` traced irradiance of all parts \[W/m²\].
+    #[must_use]
+    pub fn off(&self, mean: f64) -> f64 {
+        let whole = self.traced.max(DARKEST * mean);
+        if whole > 0.0 { self.traced * (self.ratio - 1.0).abs() / whole } else { 0.0 }
+    }
+}
+
+/// What [`Oracle::brightness`] makes of places: all together, then those in each of `boxes`³ equal boxes of the lattice's bounds
+/// that has any.
 #[must_use]
 pub fn brightness_of(places: &[LitPlace], lattice: &Lattice, boxes: u16) -> Vec<Brightness> {
     let [nx, ny, nz] = lattice.dims.map(|n| n - 1);
@@ -51,7 +79,7 @@ pub fn brightness_of(places: &[LitPlace], lattice: &Lattice, boxes: u16) -> Vec<
     let step = (high - low) / f64::from(boxes.max(1));
     let count = usize::from(boxes.max(1));
     let mut sums = vec![Sums::default(); count * count * count];
-    for place in places.iter().filter(|place| place.seen) {
+    for place in places {
         let at = ((place.point - low) / step).to_array().map(|x| (x.max(0.0) as usize).min(count - 1));
         sums[at[0] + count * (at[1] + count * at[2])].add(&Sums {
             places: 1,
@@ -72,12 +100,13 @@ pub fn brightness_of(places: &[LitPlace], lattice: &Lattice, boxes: u16) -> Vec<
 impl Oracle<'_> {
     /// Compares the indirect irradiance that `grid` gives surfaces, looked up as a client does (filled, moved off the surface by
     /// [`SURFACE_BIAS`], with `reconstruction`), with what paths find there: first for all surfaces together, then for those in
-    /// each of `boxes`³ equal boxes of the grid's bounds that has any light.
+    /// each of `boxes`³ equal boxes of the grid's bounds that has any.
     ///
-    /// About `places` places are spread evenly over the area of all surfaces, each with both its sides; a side counts if a path
-    /// finds light there and it is [seen](LitPlace::seen) from the open, where a camera may be. The inside of a scanned model
-    /// and the floor under it do not count, although a little light gets there through holes and gaps.
-    /// [`lit_places`](Self::lit_places) tells what is left out. Of `sampling` the paths are those of each side.
+    /// The places are about `places` pixels of pictures that are taken everywhere: in all directions from points that are even over the
+    /// open space within the grid's bounds, as far as there is light: next to a vertex with at least [`DARKEST`] of the mean, for in less
+    /// a picture exposed for the scene shows nothing. So a place counts as much as it is seen; the inside of a scanned model and the gap
+    /// under it, where no camera comes, do not count, although a little light gets there. Of `sampling` the paths are
+    /// those of each place.
     ///
     /// # Errors
     ///
@@ -98,12 +127,11 @@ impl Oracle<'_> {
         Ok(brightness_of(&found, grid.lattice(), boxes))
     }
 
-    /// The places that [`brightness`](Self::brightness) looks at and a path finds light at, each with what was found there and
-    /// whether it counts.
+    /// The places that [`brightness`](Self::brightness) looks at, each with what was found there.
     ///
     /// # Errors
     ///
-    /// [`BakeError::Cancelled`]; the monitor's progress counts sides.
+    /// [`BakeError::Cancelled`]; the monitor's progress counts places.
     ///
     /// # Panics
     ///
@@ -116,75 +144,99 @@ impl Oracle<'_> {
         sampling: Sampling,
         monitor: &dyn Monitor,
     ) -> Result<Vec<LitPlace>, BakeError> {
-        let sides = self.sides(places);
-        let traced = self.irradiance(&sides, sampling, monitor)?;
+        let lit = self.lit_vertices(grid);
+        let seen: Vec<_> = (0..places).filter_map(|n| self.pixel(grid.lattice(), &lit, n as u64)).collect();
+        let traced = self.irradiance(&seen, sampling, monitor)?;
         let filled = fill(grid, &FillOptions::default());
-        let lit = sides.into_iter().zip(traced).filter_map(|((point, normal), traced)| {
-            let truth = traced.irradiance.element_sum();
+        let found = seen.into_iter().zip(traced).map(|((point, normal), traced)| {
             let filter = SpatialFilter::Trilinear;
-            let baked = || filled.surface_irradiance(point, normal, SURFACE_BIAS, reconstruction, filter);
-            (truth > 0.0).then(|| LitPlace {
+            let baked = filled.surface_irradiance(point, normal, SURFACE_BIAS, reconstruction, filter);
+            LitPlace {
                 point,
                 normal,
-                baked: f64::from(baked().element_sum()),
-                traced: truth,
+                baked: f64::from(baked.element_sum()),
+                traced: traced.irradiance.element_sum(),
                 // Channels of one path go together: the worst case.
                 error: traced.standard_error.element_sum(),
-                seen: self.is_seen(grid, point, normal),
-            })
-        });
-        Ok(lit.collect())
-    }
-
-    /// Whether a place a little off a surface is seen from one of the 4 × 4 × 4 vertices around it that light reaches.
-    fn is_seen(&self, grid: &IrradianceGrid, point: DVec3, normal: Vec3) -> bool {
-        let (lattice, sight) = (grid.lattice(), self.stage.sight());
-        let from = self.stage.space.to_bake(point);
-        let around: [core::ops::Range<u16>; 3] = core::array::from_fn(|a| {
-            let (last, step) = (f64::from(lattice.dims[a]) - 1.0, lattice.step[a]);
-            let place = if step > 0.0 { (point[a] - lattice.origin[a]) / step } else { 0.0 };
-            let below = place.clamp(0.0, last).floor();
-            ((below - 1.0).max(0.0) as u16)..((below + 2.0).min(last) as u16 + 1)
-        });
-        let [x, y, z] = around;
-        z.into_iter().any(|k| {
-            y.clone().any(|j| {
-                x.clone().any(|i| {
-                    let way = self.stage.space.to_bake(lattice.position(i, j, k).into()) - from;
-                    grid.is_valid(lattice.index(i, j, k) as usize)
-                        && way.dot(normal) > 0.0
-                        && !sight.occluded(from, way, 1.0)
-                })
-            })
-        })
-    }
-
-    /// Places in world space \[m\], a little off both sides of about as many points as asked for, spread over all
-    /// surfaces in proportion to their area.
-    fn sides(&self, places: usize) -> Vec<(DVec3, Vec3)> {
-        let stage = &self.stage;
-        let triangles = stage.surfaces.triangles();
-        let area = |t: &[Vec3; 3]| f64::from((t[1] - t[0]).cross(t[2] - t[0]).length());
-        let each = triangles.iter().map(area).sum::<f64>() / places.max(1) as f64;
-        let mut sides = Vec::new();
-        // Equal steps along the list of areas, the first half a step in.
-        let mut left = 0.5 * each;
-        for (number, triangle) in triangles.iter().enumerate() {
-            left -= area(triangle);
-            while left < 0.0 && each > 0.0 {
-                let n = sides.len() as f64 / 2.0;
-                // Multiples of irrational fractions are even over the square (Roberts 2018, "R2"), folded to a triangle.
-                let [u, v] =
-                    [0.754_877_666_246_693, 0.569_840_290_998_053].map(|a: f64| (0.5 + a * n).fract());
-                let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }.map(|x| x as f32);
-                let point = stage.surfaces.point(number as u32, [1.0 - u - v, u, v]);
-                for normal in [point.normal, -point.normal] {
-                    sides.push((stage.space.to_world(point.origin(normal)), normal));
-                }
-                left += each;
             }
-        }
-        sides
+        });
+        Ok(found.collect())
+    }
+
+    /// The place, a little off a surface that reflects evenly, and the normal of its side that pixel `number` shows of pictures that
+    /// are taken next to `lit` vertices; `None` where it shows no surface.
+    fn pixel(&self, lattice: &Lattice, lit: &[bool], number: u64) -> Option<(DVec3, Vec3)> {
+        let stage = &self.stage;
+        let stream = Stream::new(VIEW_SEED, number);
+        let [nx, ny, nz] = lattice.dims.map(|n| n - 1);
+        let (low, high) = (DVec3::from(lattice.origin), DVec3::from(lattice.position(nx, ny, nz)));
+        let eye = (0..LOOKS).find_map(|look| {
+            let [x, y, z, _] = stream.uniforms(look, Purpose::View).map(f64::from);
+            let eye = low + (high - low) * DVec3::new(x, y, z);
+            self.is_open(lattice, lit, eye).then_some(eye)
+        })?;
+        let [u, v, ..] = stream.uniforms(LOOKS, Purpose::View);
+        let (eye, direction) = (stage.space.to_bake(eye), hemisphere::sphere([u, v]));
+        let hit = stage.sight().closest_hit(eye, direction, f32::MAX)?;
+        let point = stage.surfaces.point(hit.triangle, hit.weights);
+        let side = point.facing(-direction);
+        let reflects = stage.surfaces.albedo(&hit).max_element() > 0.0;
+        reflects.then(|| (stage.space.to_world(point.origin(side)), side))
+    }
+
+    /// Which vertices are valid, lie in no surface (one in a wall would be seen from both sides) and have at least [`DARKEST`] of the
+    /// mean light of those that are valid.
+    fn lit_vertices(&self, grid: &IrradianceGrid) -> Vec<bool> {
+        let light = |vertex: usize| -> f64 {
+            if !grid.is_valid(vertex) {
+                return 0.0;
+            }
+            match grid.get(vertex) {
+                Some(VertexValues::Vectors(vectors)) => {
+                    let along = |hemisphere: usize| {
+                        vectors[hemisphere].iter().map(|c| f64::from(c[hemisphere / 2].abs())).sum::<f64>()
+                    };
+                    (0..6).map(along).sum()
+                }
+                Some(VertexValues::Radiance(radiance)) => radiance.iter().map(|c| f64::from(c[0])).sum(),
+                None => 0.0,
+            }
+        };
+        let all: Vec<f64> = (0..grid.vertex_count()).map(light).collect();
+        let valid = (0..all.len()).filter(|&vertex| grid.is_valid(vertex)).count().max(1);
+        let least = DARKEST * all.iter().sum::<f64>() / valid as f64;
+        let free = |vertex: usize| {
+            let (lattice, space) = (grid.lattice(), self.stage.space);
+            let [i, j, k] = lattice.coords(vertex as u64);
+            let middle = space.to_bake(lattice.position(i, j, k).into());
+            let aside = DVec3::from(lattice.step) * (space.scale() * f64::from(ASIDE));
+            // The diagonals of a small box: a wall, an edge or a corner that the vertex lies in cuts one of them.
+            [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].iter().all(|[y, z]| {
+                let half = (aside * DVec3::new(1.0, *y, *z)).as_vec3();
+                !self.stage.sight().occluded(middle - half, half * 2.0, 1.0)
+            })
+        };
+        let shows = |(vertex, light): (usize, f64)| light > 0.0 && light >= least && free(vertex);
+        all.into_iter().enumerate().map(shows).collect()
+    }
+
+    /// Whether a point is in the open: a `lit` corner of its cell sees it.
+    fn is_open(&self, lattice: &Lattice, lit: &[bool], eye: DVec3) -> bool {
+        let stage = &self.stage;
+        let from = stage.space.to_bake(eye);
+        let first: [u16; 3] = core::array::from_fn(|a| {
+            let (last, step) = (lattice.dims[a].saturating_sub(2), lattice.step[a]);
+            if step > 0.0 {
+                ((eye[a] - lattice.origin[a]) / step).clamp(0.0, f64::from(last)) as u16
+            } else {
+                0
+            }
+        });
+        (0..8u16).any(|corner| {
+            let [i, j, k] = core::array::from_fn(|a| (first[a] + (corner >> a & 1)).min(lattice.dims[a] - 1));
+            let way = stage.space.to_bake(lattice.position(i, j, k).into()) - from;
+            lit[lattice.index(i, j, k) as usize] && !stage.sight().occluded(from, way, 1.0)
+        })
     }
 }
 

@@ -26,6 +26,8 @@ pub(crate) enum Purpose {
     Sky = 8,
     /// Which vertices light is gathered at to measure bias.
     Probe = 7,
+    /// Where in a scene one looks from, and where to.
+    View = 9,
 }
 
 /// The random numbers of one item (a photon, a path) under one seed.

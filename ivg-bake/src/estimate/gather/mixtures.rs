@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 
-use super::{Known, MOST_BOUNCES, SURE_BOUNCES};
+use super::{Known, MOST_BOUNCES, kept};
 use crate::accel::Hit;
 use crate::lobes::{LobeTable, Scattered, Way};
 use crate::sampling::rng::{Purpose, Stream, unit};
@@ -25,13 +25,16 @@ impl Stage<'_> {
         let (mut radiance, mut throughput) = (DVec3::ZERO, DVec3::ONE);
         // Whether lights were sampled at the last surface that turned the path.
         let mut sampled = false;
+        // How far the path has come since a surface reflected it evenly; there lights that are near were not sampled.
+        let mut flown = f32::INFINITY;
         for bounce in 1..=MOST_BOUNCES {
             let Some(hit) = self.accel.closest_hit(origin, direction, f32::MAX) else {
                 let image = if sampled { Vec3::ZERO } else { self.emitters.sky_image(direction) };
                 return radiance + throughput * (self.emitters.sky() + image).as_dvec3();
             };
             let point = self.surfaces.point(hit.triangle, hit.weights);
-            let seen = if bounce == 1 { direct } else { !sampled };
+            flown += hit.distance;
+            let seen = if bounce == 1 { direct } else { !sampled || flown < self.emitters.near() };
             if seen {
                 let emission = self.surfaces.emission(hit.triangle, point.normal, -direction);
                 radiance += throughput * emission.as_dvec3();
@@ -53,17 +56,16 @@ impl Stage<'_> {
             if throughput.max_element() <= 0.0 {
                 return radiance;
             }
-            if bounce > SURE_BOUNCES {
-                let kept = f64::from(scattered.colour.max_element().min(1.0));
-                if f64::from(unit(words[2])) >= kept {
-                    return radiance;
-                }
-                throughput /= kept;
+            let kept = kept(bounce, f64::from(scattered.colour.max_element()));
+            if f64::from(unit(words[2])) >= kept {
+                return radiance;
             }
-            sampled = match scattered.way {
-                Way::Even | Way::Facets { .. } => true,
-                Way::Mirror | Way::Refracted { .. } => false,
-                Way::Straight => sampled,
+            throughput /= kept;
+            (sampled, flown) = match scattered.way {
+                Way::Even => (true, 0.0),
+                Way::Facets { .. } => (true, f32::INFINITY),
+                Way::Mirror | Way::Refracted { .. } => (false, f32::INFINITY),
+                Way::Straight => (sampled, flown),
             };
             direction = scattered.direction;
         }
@@ -71,13 +73,13 @@ impl Stage<'_> {
     }
 
     /// One sample of the radiance that a surface reflects of light straight from a light, without the sky: by what `scattered`
-    /// has chosen, and by its facets; even reflection, on wish, without that of the image of a sky.
+    /// has chosen, and by its facets; even reflection without what a path that `goes_on` meets by chance, as [`Stage::direct`].
     fn direct_at(
         &self,
         lobes: &LobeTable,
         (hit, side): (&Hit, Vec3),
         direction: Vec3,
-        (scattered, with_image): (&Scattered, bool),
+        (scattered, goes_on): (&Scattered, bool),
         (stream, step): (&Stream, u32),
     ) -> DVec3 {
         let point = self.surfaces.point(hit.triangle, hit.weights);
@@ -89,7 +91,7 @@ impl Stage<'_> {
         }
         let numbers = (stream, step);
         let even = match scattered.way {
-            Way::Even if light.from_sky && !with_image => 0.0,
+            Way::Even if goes_on && light.near || !goes_on && light.from_sky => 0.0,
             Way::Even => 1.0,
             Way::Facets { again: true } => {
                 self.surfaces.reflected_again(lobes, hit, (side, light.direction), numbers)
