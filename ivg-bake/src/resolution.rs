@@ -113,13 +113,15 @@ impl Resolution {
         let [sx, sy, sz] = step.map(|step| format!("{step:.3}"));
         let mut text = format!(
             "{nx}x{ny}x{nz}: half of the reflected light flies {flight:.3} m or more before it meets a surface; over an eighth of \
-             that light changes by {cx} along x, {cy} along y, {cz} along z, so that steps of about {:.0} % are {sx}, {sy}, {sz} m",
-            100.0 * CHANGE
+             that light changes by {cx} along x, {cy} along y, {cz} along z; steps are {sx}, {sy}, {sz} m, "
         );
         if let Some(limited) = limited {
-            text += &format!("; coarser than the light calls for: {}", limited.words());
-        } else if change.iter().any(|&change| clamped(change) != CHANGE / change) {
-            text += " (from half to four times the eighth)";
+            text += &format!("coarser than the light calls for: {}", limited.words());
+        } else {
+            text += &format!("over which it changes by about {:.0} %", 100.0 * CHANGE);
+            if change.iter().any(|&change| clamped(change) != CHANGE / change) {
+                text += ", at least half and at most four times the eighth";
+            }
         }
         text
     }

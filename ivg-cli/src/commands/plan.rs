@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
         Some(pilot) => files::print(&format!(
             "\nUp to {} bounces: the rest is below {} % of the light energy.\nCosts are for {} photons on a 16x16x16 grid, measured with {} photons;\nin brackets, what an effect left out would cost.\n",
             plan.max_bounces,
-            1e-6 * (1e8 * plan.energy_cutoff).round(),
+            (1e8 * plan.energy_cutoff).round() / 1e6,
             arguments.photons,
             pilot.photons,
         ))?,
