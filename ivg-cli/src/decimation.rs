@@ -75,9 +75,11 @@ impl<'a> Decimation<'a> {
         let chosen = errors.get(enough.min(errors.len().saturating_sub(1))).copied().unwrap_or(0.0);
         let mut levels = levels_of(chosen);
         // Many collapses may cost the same; of these no more are made than needed.
-        let finer = enough.checked_sub(1).map(|below| levels_of(errors[below]));
+        let finer = match enough.checked_sub(1) {
+            Some(below) => levels_of(errors[below]),
+            None => self.meshes.iter().map(|mesh| mesh.progressive.positions.len() as u32).collect(),
+        };
         for index in 0..levels.len() {
-            let Some(finer) = &finer else { break };
             let mesh = &self.meshes[index];
             let left = faces.saturating_sub(count(&levels));
             let allowed = mesh.faces(levels[index]) + left / mesh.instances.max(1);
