@@ -209,7 +209,8 @@ impl Stage<'_> {
             };
             let point = self.surfaces.point(hit.triangle, hit.weights);
             // Later on lights have been sampled, but for those that are near.
-            if if bounce == 1 { direct } else { hit.distance < self.emitters.near() } {
+            let seen = if bounce == 1 { direct } else { hit.distance < self.emitters.near() };
+            if seen {
                 let emission = self.surfaces.emission(hit.triangle, point.normal, -direction);
                 radiance += throughput * emission.as_dvec3();
             }
