@@ -49,6 +49,9 @@ function rankOf(number) {
   return bits >= 0 ? bits : -(bits & 0x7fffffff) - 1;
 }
 
+/** The rank of the least finite number. */
+const LEAST_RANK = -0x7f7fffff - 1;
+
 function floatOf(rank) {
   floatView.setInt32(0, rank >= 0 ? rank : (-(rank + 1) | 0x80000000));
   return floatView.getFloat32(0);
@@ -77,7 +80,8 @@ export class FloatCells {
   /** The rank of the first number of a cell: -0 for that of 0. */
   #first(axis, cell) {
     const number = (this.lowest[axis] + cell) * this.unit;
-    return number === 0 ? -1 : rankOf(number);
+    // The first cell may begin below the least finite number.
+    return number === 0 ? -1 : Math.max(rankOf(number), LEAST_RANK);
   }
 
   /** @returns {number} how many numbers a cell has */

@@ -215,7 +215,8 @@ export class WedgeValues {
     if (this.#normals !== null) {
       this.#readKind(this.#normals, symbols, neighbours, target, (values, residual, exact) => {
         let code = this.#expectedNormal(values, weights, target);
-        const turn = !exact && Math.abs(code[0]) + Math.abs(code[1]) > this.#most;
+        // Turned there and back even without a residual: on the rim that may be another code (PMESH-COD-16, 5).
+        const turn = Math.abs(code[0]) + Math.abs(code[1]) > this.#most;
         if (turn) code = turned(code, this.#most);
         if (!exact) code = code.map((number) => (number + residual(0)) | 0);
         return (valueClass) => this.#addNormal(code, turn, valueClass, offset);
