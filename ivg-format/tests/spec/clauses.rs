@@ -89,7 +89,10 @@ pub(super) fn check_test(name: &str) -> Result<(), String> {
 
 /// The clauses of all formats.
 fn all_clauses() -> Vec<toml::Table> {
-    ["clauses", "clauses-pmesh", "clauses-accumulator"].into_iter().flat_map(|table| rows(table, "clause")).collect()
+    ["clauses", "clauses-pmesh", "clauses-accumulator"]
+        .into_iter()
+        .flat_map(|table| rows(table, "clause"))
+        .collect()
 }
 
 /// The tests that a clause names.
