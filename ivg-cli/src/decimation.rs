@@ -127,7 +127,10 @@ impl Ordered {
         };
         // A mesh that no node places is not worth an order.
         let rest = if transforms.is_empty() { Mesh::default() } else { part(false) };
-        let indexed = convert::indexed_mesh(&rest, materials)?;
+        let mut indexed = convert::indexed_mesh(&rest, materials)?;
+        // Light is baked with the normals of faces: edges that only shading shows are no seams to keep.
+        indexed.wedges.normals.clear();
+        indexed.wedges.colours.clear();
         let (progressive, _) = pmesh_build::build(&indexed, &BuildOptions::default(), progress)
             .map_err(|error| Failure::new(format_args!("mesh \"{}\": {error}", mesh.name)))?;
         let introduced = progressive.stored_faces().into_iter().map(|(level, ..)| level).collect();
