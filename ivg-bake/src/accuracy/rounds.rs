@@ -161,7 +161,9 @@ where
             let allowed = self.asked.powi(2) * look.signal;
             // What the noise of gathered vertices leaves: no photon makes that smaller.
             let bearable = |look: &Look| MOST_BIAS * (allowed - look.gathered).max(0.0);
-            while self.probes.is_some() && look.bias_bound > bearable(&look) && !last {
+            let monitor = self.job.workers.monitor;
+            let in_time = || !last && !monitor.enough();
+            while self.probes.is_some() && look.bias_bound > bearable(&look) && in_time() {
                 let uncertain = look.bias < UNCERTAIN * bearable(&look);
                 if uncertain && self.probes.as_ref().is_some_and(|p| p.can_grow() && p.len() < PROBES.1) {
                     let more = self.probes.as_ref().map_or(0, Probes::len);
