@@ -42,7 +42,8 @@ fn run_all(suite: &Suite, arguments: &RunArguments) -> Result<ExitCode, Failure>
         Some(path) => words::patterns(&fs::read_to_string(path).map_err(|error| Failure::file(path, error))?),
         None => Vec::new(),
     };
-    let jobs = arguments.jobs.or_else(|| std::thread::available_parallelism().ok().map(usize::from)).unwrap_or(1);
+    let jobs =
+        arguments.jobs.or_else(|| std::thread::available_parallelism().ok().map(usize::from)).unwrap_or(1);
     let limit = Duration::from_secs(arguments.timeout);
     let options = options(&arguments.decoder, arguments.only.clone(), skip, jobs, limit);
     let results = run_suite(suite, &options).map_err(Failure::new)?;

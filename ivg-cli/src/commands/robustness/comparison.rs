@@ -81,12 +81,12 @@ pub(super) fn mark_near(flat: &FlatScene, lattice: &Lattice, near: &mut [bool]) 
         let low = corners[0].min(corners[1]).min(corners[2]) - half;
         let high = corners[0].max(corners[1]).max(corners[2]) + half;
         let ranges = [0, 1, 2].map(|axis| {
-            let last = lattice.dims[axis] - 1;
+            let end = u64::from(lattice.dims[axis]);
             // An axis of one vertex has no step.
             let index = |x: f64| if step[axis] > 0.0 { x / step[axis] } else { x.signum() };
             let from = index(low[axis]).ceil().max(0.0) as u64;
-            let to = index(high[axis]).floor();
-            if to < 0.0 { 1..=0 } else { from..=(to as u64).min(u64::from(last)) }
+            // A triangle that ends before the first vertex is near none.
+            from..((index(high[axis]).floor() + 1.0).max(0.0) as u64).min(end)
         });
         let [xs, ys, zs] = ranges;
         for k in zs {
