@@ -67,7 +67,7 @@ fn cross_coloured_walls_cancel() {
         assert_eq!([vectors[0][1], vectors[1][0]], [[0.0; 3]; 2]);
         assert!(vectors.iter().all(|hemisphere| hemisphere[2] == [0.0; 3]));
         assert!(vectors[0][0][0] > 0.0 && vectors[1][1][0] < 0.0);
-        for colour in 0..2 {
+        for colour in [0, 1] {
             // The net flux is one, whichever axis divides it: sums of the same deposits, three in f32.
             let net = |axis: usize| {
                 Vec3::from(vectors[2 * axis][colour]) + Vec3::from(vectors[2 * axis + 1][colour])
