@@ -103,7 +103,9 @@ function pmeshReader() {
       yield u32(0xffffffff);
       return;
     }
+    // By way of the finest level: levels are gone through in both directions.
     const replay = mesh.replay();
+    replay.goTo(mesh.finest);
     const shown = replay.goTo(level ?? mesh.finest);
     yield u32(shown.level, shown.vertices, shown.wedges, shown.faces);
     const { positions, wedgeVertices, normals, uvs, colours, corners, materials } = shown;

@@ -294,6 +294,7 @@ fn chunks(lights: &[u8], meta: &[u8]) -> Vec<Refused> {
         (m, "metadata", ivg::METADATA, edited(CHUNK_HEAD, b"G"), "a key with a capital letter"),
         (m, "metadata-line", ivg::METADATA, edited(CHUNK_HEAD + 21, b"!"), "the last line does not end"),
         (l, "lights", ivg::LIGHTS, light(0, &[3]), "fewer lights than the list declares"),
+        (l, "lights-more", ivg::LIGHTS, light(0, &[1]), "a light more than the list declares"),
         (l, "light-name", ivg::LIGHTS, light(8, &[0xFF]), "a name that is not UTF-8"),
         (l, "light-flags", wire::RESERVED, light(4, &[2]), "a reserved flag of a light"),
     ]

@@ -20,6 +20,7 @@ const NORMALS: &str = "0054-coded-normals";
 const WEDGES: &str = "0057-coded-wedges";
 const NO_FACES: &str = "0058-coded-no-faces";
 const GREATEST: &str = "0059-coded-greatest";
+const POINTS: &str = "0072-coded-points";
 
 pub(super) fn refused<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
     let mut list = bytes(&twin);
@@ -234,6 +235,13 @@ fn answers<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             mesh::CODED_LENGTH,
             overlapping(twin(EXACT), mesh::CODED_LENGTH),
             "the last word of a packet and its raw bits have a byte in common",
+        ),
+        (
+            POINTS,
+            "coded-overlap-base",
+            mesh::CODED_LENGTH,
+            overlapping(twin(POINTS), mesh::CODED_LENGTH),
+            "the second state and the number of faces of the base, the last that is read, have a byte in common",
         ),
     ]
 }

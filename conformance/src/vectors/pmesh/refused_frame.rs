@@ -235,9 +235,12 @@ pub(super) fn headers(file: &[u8]) -> Vec<Refused> {
 pub(super) fn counts(empty: &[u8], seam: &[u8]) -> Vec<Refused> {
     let one = |field: usize| in_header(empty, field, &[1]);
     let bare = in_header(seam, at::ATTRIBUTES, &[0x18]);
+    // Normals and seams, without which there is one wedge a vertex.
+    let wedges = in_header(&overwritten(empty, at::ATTRIBUTES, &[0x11]), at::WEDGE_COUNT, &[1]);
     vec![
         (EMPTY, "faces-alone", mesh::COUNTS, one(at::FACE_COUNT), "a face without vertices"),
         (EMPTY, "base-alone", mesh::COUNTS, one(at::BASE_VERTICES), "a base without vertices"),
+        (EMPTY, "wedges-alone", mesh::COUNTS, wedges, "a wedge without vertices"),
         (EMPTY, "packets-alone", mesh::COUNTS, one(at::PACKET_COUNT), "a packet without vertices"),
         (
             SEAM,

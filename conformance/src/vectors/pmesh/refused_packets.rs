@@ -100,6 +100,13 @@ pub(super) fn wedges(file: &[u8]) -> Vec<Refused> {
         (SEAM, "wedges-0", mesh::WEDGE_COUNT, count(1, 0), "a vertex without a wedge"),
         (
             SEAM,
+            "wedges-0-of-all",
+            mesh::WEDGE_COUNT,
+            lie(file, 0, |parts| parts.wedge_counts = vec![1, 0, 4]),
+            "a vertex without a wedge, though the packet has as many as it should",
+        ),
+        (
+            SEAM,
             "varint-33-bits",
             mesh::VARINT,
             instead(0, &[0x81, 0x80, 0x80, 0x80, 0x10]),

@@ -287,7 +287,34 @@ fn coded_attributes() -> Vec<Variant> {
             options(Mode::Coded, Positions::Quantised(10), PacketSize::Fixed(3)),
             "positions up to the greatest number: the last point of an axis would lie beyond it",
         ),
+        (
+            "0070-coded-colours",
+            colourful(40),
+            coded(GROWING),
+            "colours of which each part goes its own way, alpha too",
+        ),
+        (
+            "0071-coded-f32-lowest",
+            lowest(),
+            options(Mode::Coded, Positions::F32, PacketSize::Fixed(3)),
+            "the lowest number there is: its cell begins below all numbers",
+        ),
+        (
+            "0072-coded-points",
+            split(&[], &[]),
+            coded(PacketSize::Fixed(3)),
+            "a base without faces: their number is the last that is read",
+        ),
     ]
+}
+
+/// A surface of any colours.
+fn colourful(vertices: usize) -> ProgressiveMesh {
+    let mut mesh = grown(6, Kind { vertices, colours: true, ..Kind::default() });
+    for (n, colour) in (0..).zip(&mut mesh.wedges.colours) {
+        *colour = [0, 1, 2, 3].map(|part| (splitmix64(6, 4 * n + part) >> (56 + 2 * (part % 2))) as u8);
+    }
+    mesh
 }
 
 /// A tetrahedron with a colour for each face.
@@ -311,6 +338,13 @@ fn colour_by_face() -> ProgressiveMesh {
 
 fn no_faces() -> ProgressiveMesh {
     split(&[0, 0, 2], &[])
+}
+
+/// A triangle from the lowest number to near the greatest, in cells of 2¹⁰⁹ m.
+fn lowest() -> ProgressiveMesh {
+    let mut mesh = split(&[], &[[0, 1, 2]]);
+    mesh.positions = vec![[f32::MIN, 0.0, 0.0], [3e38, 1e30, 0.0], [-3.4e38, 0.0, f32::MIN]];
+    mesh
 }
 
 /// A triangle in a box that ends, along the second axis, 1.6 steps behind its begin and at the greatest number.
