@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The folder that the archive unpacks into.
-const FOLDER: &str = "ivg-conformance";
+pub const FOLDER: &str = "ivg-conformance";
 
 /// What goes into the archive: paths from the root of the repository, and what they are called there. A folder is taken whole.
 const PARTS: [(&str, &str); 9] = [

@@ -9,8 +9,9 @@
 //! ```
 //!
 //! [`steps`] is the list of what the suite does, in order; [`runner`] runs such a list and stops at the first failure;
-//! [`archive`] packs the conformance suite; [`tools`] finds, or with `--install` fetches, what the machine lacks; [`tidy`] looks at the sources; [`peers`] builds and
-//! calls the comparisons in `tools/peers`.
+//! [`archive`] packs the conformance suite, [`readers`] runs it on the readers in other languages; [`tools`] finds, or with
+//! `--install` fetches, what the machine lacks; [`tidy`] looks at the sources; [`peers`] builds and calls the comparisons in
+//! `tools/peers`.
 
 #![forbid(unsafe_code)]
 
@@ -18,6 +19,7 @@ pub mod archive;
 pub mod fuzz;
 pub mod invocation;
 pub mod peers;
+pub mod readers;
 pub mod runner;
 pub mod steps;
 pub mod tidy;

@@ -66,10 +66,10 @@ struct PeersOptions {
 
 #[derive(Debug, Args)]
 struct TestOptions {
-    /// Install what is missing: a software Vulkan driver (apt-get), cargo-fuzz (into target/tools).
+    /// Install what is missing: a software Vulkan driver, Python and node (apt-get), cargo-fuzz (into target/tools).
     #[arg(long)]
     install: bool,
-    /// Leave out fuzzing and all but the default feature set.
+    /// Leave out fuzzing, readers in other languages and all but the default feature set.
     #[arg(long)]
     fast: bool,
     /// Run only the steps whose name contains WORD; may be repeated.

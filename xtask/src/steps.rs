@@ -6,7 +6,7 @@
 
 use crate::invocation::Invocation;
 use crate::runner::{Action, Context, Step};
-use crate::{fuzz, peers, tidy, tools, workspace_root};
+use crate::{fuzz, peers, readers, tidy, tools, workspace_root};
 
 #[cfg(test)]
 mod tests;
@@ -20,7 +20,7 @@ pub const ENVIRONMENT: (&str, &str) = ("CARGO_INCREMENTAL", "0");
 pub struct Selection {
     /// Install what is missing.
     pub install: bool,
-    /// Leave out fuzzing and all but the default feature set.
+    /// Leave out fuzzing, readers in other languages and all but the default feature set.
     pub fast: bool,
     /// If not empty: only steps whose name contains one of these.
     pub only: Vec<String>,
@@ -85,6 +85,7 @@ fn all(selection: &Selection) -> Vec<Step> {
             "tests, no default features",
             [cargo(&format!("test --locked --no-default-features {packages}"))],
         ));
+        steps.push(Step { name: "readers in other languages", actions: readers::actions() });
         steps.push(step("fuzz targets build", [call("cargo fuzz build", fuzz::build)]));
         let seconds = selection.fuzz_seconds;
         steps.push(step(
@@ -103,7 +104,7 @@ fn tools_step(selection: &Selection) -> Step {
     let (install, full) = (selection.install, !selection.fast);
     step(
         "tools",
-        [call("compilers, Vulkan driver, cargo-fuzz: found or installed", move |context| {
+        [call("compilers, Vulkan driver, Python, node, cargo-fuzz: found or installed", move |context| {
             tools::ensure(context, install, full)
         })],
     )

@@ -22,14 +22,14 @@ struct Tool {
     install: fn(&Path) -> Vec<Invocation>,
 }
 
-/// Checks for everything that the suite needs; with `install`, installs what is missing. `fuzzing` says whether the fuzz
-/// targets will be run.
+/// Checks for everything that the suite needs; with `install`, installs what is missing. `full` says whether readers
+/// in other languages and fuzz targets will be run.
 ///
 /// # Errors
 ///
 /// When something is missing; the text has the line that installs it. With `install`: when that line fails, or the tool is
 /// still missing after it.
-pub fn ensure(context: &mut Context, install: bool, fuzzing: bool) -> Result<(), String> {
+pub fn ensure(context: &mut Context, install: bool, full: bool) -> Result<(), String> {
     let compiler = Tool {
         name: "a C and C++ compiler",
         is_there: |root| ["cc", "c++"].iter().all(|name| answers(root, name)),
@@ -52,9 +52,19 @@ pub fn ensure(context: &mut Context, install: bool, fuzzing: bool) -> Result<(),
             vec![Invocation::cargo(&arguments)]
         },
     };
-    let mut tools = vec![compiler, vulkan];
-    if fuzzing {
-        tools.push(cargo_fuzz);
+    let python = Tool {
+        name: "Python 3",
+        is_there: |root| answers(root, "python3"),
+        install: |root| apt_get(root, "python3"),
+    };
+    let node = Tool {
+        name: "node",
+        is_there: |root| answers(root, "node"),
+        install: |root| apt_get(root, "nodejs"),
+    };
+    let mut tools = vec![compiler, vulkan, python];
+    if full {
+        tools.extend([node, cargo_fuzz]);
     }
     provide(context, &tools, install)
 }

@@ -34,6 +34,9 @@ fn the_full_suite_has_every_part() {
         "cargo test --locked --manifest-path tools/peers/Cargo.toml",
         "cargo test --locked --workspace --all-features",
         "cargo test --locked --no-default-features",
+        "conformance/ports/c/check.sh",
+        "node conformance/adapters/js/adapter.mjs",
+        "conformance/mutants/check.py",
         "cargo fuzz build",
         "cargo fuzz list",
     ] {
