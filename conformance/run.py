@@ -508,6 +508,7 @@ def command_explain(suite, args):
         line("OUT", "%(bytes)d bytes, %(form)s: %(file)s" % test["out"])
     line("bug class", test.get("bug_class"))
     line("twin", test.get("twin"))
+    line("mistakes", " before ".join(test.get("both", [])))
     line("whole file", test.get("of"))
     recipe = test.get("recipe") or suite.by_id.get(test.get("of"), {}).get("recipe")
     if recipe:

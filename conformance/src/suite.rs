@@ -12,6 +12,7 @@ mod needs;
 pub mod shown;
 pub mod tables;
 
+pub(crate) use fields::{envelopes, fits};
 pub use gate::{EXCEPTIONS, gaps};
 pub use generate::{EXPECTED, generate};
 pub use lint::lint;

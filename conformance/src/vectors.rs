@@ -1,6 +1,7 @@
 //! The conformance vectors: small files, right and wrong, each with what a reader must say of it. They are made here,
 //! from nothing but this code, so that `cargo run -p conformance --bin generate` writes the same bytes on every machine.
 
+pub(crate) mod both;
 pub mod edit;
 mod ivg;
 pub mod levels;
@@ -52,6 +53,17 @@ pub struct Vector {
     pub why: &'static str,
     /// For a file to refuse: the name of the right one that it differs from in one place.
     pub twin: Option<&'static str>,
+    /// For a file with two mistakes: which.
+    pub both: Option<Both>,
+}
+
+/// Two mistakes in one file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Both {
+    /// The names of the files with one of them: of that which is reported, and of the other.
+    pub names: [String; 2],
+    /// The clause that says which is judged first.
+    pub clause: &'static str,
 }
 
 /// A file to refuse: name of the right one that it differs from, what to call the mistake, its code, the file, what is wrong.
@@ -59,13 +71,14 @@ type Refused = (&'static str, &'static str, Code, Vec<u8>, &'static str);
 
 impl Vector {
     fn accepted(format: Format, name: &str, bytes: Vec<u8>, why: &'static str) -> Self {
-        Self { format, name: name.to_owned(), bytes, verdict: Verdict::Ok, code: None, why, twin: None }
+        let name = name.to_owned();
+        Self { format, name, bytes, verdict: Verdict::Ok, code: None, why, twin: None, both: None }
     }
 
     fn refused(format: Format, (twin, mistake, code, bytes, why): Refused) -> Self {
         let Rule { number, verdict, .. } = *code.rule();
         let name = format!("x-{number}-{mistake}");
-        Self { format, name, bytes, verdict, code: Some(number), why, twin: Some(twin) }
+        Self { format, name, bytes, verdict, code: Some(number), why, twin: Some(twin), both: None }
     }
 
     /// Path relative to the folder of the vectors.
@@ -79,9 +92,11 @@ impl Vector {
 /// All vectors, those of one format together.
 #[must_use]
 pub fn vectors() -> Vec<Vector> {
-    let mut vectors = ivg::vectors();
-    vectors.extend(pmesh::vectors());
-    vectors
+    let with_both = |format, mut vectors: Vec<Vector>| {
+        vectors.extend(both::refused(format, &vectors));
+        vectors
+    };
+    [with_both(Format::Ivg, ivg::vectors()), with_both(Format::Pmesh, pmesh::vectors())].concat()
 }
 
 /// What the records of an accepted `.ivg` file are called, and where they lie.

@@ -95,6 +95,22 @@ fn damage_of_the_suite_is_found() {
                 });
             }),
         ),
+        (
+            "has not the changes of its two mistakes",
+            Box::new(|folder| {
+                edit(folder, "pmesh/x-510-wedge-target-and-519-slots-equal", |test| {
+                    test["both"][1] = "pmesh/x-519-slots-more".into();
+                });
+            }),
+        ),
+        (
+            "is not refused as its first mistake is",
+            Box::new(|folder| {
+                edit(folder, "pmesh/x-510-wedge-target-and-519-slots-equal", |test| {
+                    test["both"].as_array_mut().unwrap().reverse();
+                });
+            }),
+        ),
     ] {
         let found = lint_of(damage);
         assert!(found.contains(expected), "{expected}: {found}");
@@ -129,6 +145,8 @@ fn violation(schema: &Value, root: &Value, value: &Value, place: &str) -> Option
             ("const", rule) => value == rule,
             ("enum", rule) => rule.as_array().unwrap().contains(value),
             ("minimum", rule) => value.as_u64() >= rule.as_u64(),
+            ("minItems", rule) => value.as_array().map(|items| items.len() as u64) >= rule.as_u64(),
+            ("maxItems", rule) => value.as_array().map(|items| items.len() as u64) <= rule.as_u64(),
             ("pattern", rule) => {
                 let text = value.as_str().unwrap_or("?");
                 let length = if rule == "^[0-9a-f]{64}$" { Some(64) } else { None };
@@ -180,6 +198,7 @@ fn the_manifest_has_the_form_of_its_schema() {
         ("/tests/0/sha256", Value::from("00")),
         ("/tests/0/bytes", Value::from(-1)),
         ("/tests/0/out/form", Value::Null),
+        ("/tests/0/both", Value::from(vec!["ivg/0008-small"])),
         ("/manifest", Value::from(1)),
     ] {
         let mut bad = manifest.clone();

@@ -41,6 +41,7 @@ pub fn explain(suite: &Suite, id: &str) -> Result<String, String> {
     }
     line("bug class", test.bug_class.as_deref().unwrap_or(""));
     line("twin", test.twin.as_deref().unwrap_or(""));
+    line("mistakes", &test.both.as_ref().map_or(String::new(), |both| both.join(" before ")));
     let whole = test.of.as_ref().and_then(|of| suite.test(of));
     line("whole file", whole.map_or("", |whole| &whole.id));
     let recipe = test.recipe.as_ref().or(whole.and_then(|whole| whole.recipe.as_ref()));

@@ -66,6 +66,9 @@ pub struct Test {
     /// For a file to refuse: the test of the accepted file that it differs from in one place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub twin: Option<String>,
+    /// For a file with two mistakes: the test of a file with the one that is reported, and of one with the other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub both: Option<[String; 2]>,
     /// The test of the whole file, for other commands with the same file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
@@ -103,6 +106,8 @@ pub enum Kind {
     Order,
     /// A level of a mesh.
     Levels,
+    /// A file with two mistakes: which of them is reported.
+    Precedence,
 }
 
 impl Kind {
@@ -119,6 +124,7 @@ impl Kind {
             Self::Numeric => "numeric",
             Self::Order => "order",
             Self::Levels => "levels",
+            Self::Precedence => "precedence",
         }
     }
 }

@@ -12,7 +12,7 @@ fn main() -> ExitCode {
     match lint(&folder).and_then(|found| Ok((found, gaps(&Suite::open(&folder)?.manifest)))) {
         Ok(((wrong, defects), gaps)) if wrong.is_empty() && gaps.is_empty() => {
             println!(
-                "{defects} files to refuse, each with one defect; every clause for readers has its tests"
+                "{defects} files to refuse, each with one defect or the two that it names; every clause for readers has its tests"
             );
             ExitCode::SUCCESS
         }

@@ -63,6 +63,7 @@ impl Clauses {
             (_, _, "x-520-deep" | "x-518-coded-work") => &["COM-LIM-04", "PMESH-LIM-04"],
             _ => &[],
         };
+        all.extend(vector.both.iter().map(|both| both.clause.to_owned()));
         all.extend(more.iter().map(|&clause| clause.to_owned()));
         all.into_iter().collect()
     }

@@ -1,6 +1,6 @@
 //! What each byte of an accepted file is, and what its checksums cover.
 
-use crate::vectors::edit::{DATA_OFFSET_AT, HEADER_BYTES_AT};
+use crate::vectors::edit::{DATA_OFFSET_AT, HEADER_BYTES_AT, HEADER_CHECKSUM};
 use crate::vectors::{Format, edit};
 use std::ops::Range;
 
@@ -15,11 +15,11 @@ pub(super) struct Field {
 
 /// What a checksum covers, and its own four bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Envelope {
+pub(crate) struct Envelope {
     /// All of its bytes.
-    pub(super) range: Range<usize>,
+    pub(crate) range: Range<usize>,
     /// `header`, `chunk META`, `bundle 2`.
-    pub(super) name: String,
+    pub(crate) name: String,
 }
 
 /// Offsets and names of the fields of the common header, and of the two specific ones.
@@ -77,7 +77,7 @@ pub(super) fn chunks(file: &[u8], mut at: usize, end: usize) -> Vec<Envelope> {
 }
 
 /// All checksums of an accepted file.
-pub(super) fn envelopes(format: Format, file: &[u8]) -> Vec<Envelope> {
+pub(crate) fn envelopes(format: Format, file: &[u8]) -> Vec<Envelope> {
     let header = header_bytes(file);
     let mut all = vec![Envelope { range: 0..header, name: "header".to_owned() }];
     all.extend(chunks(file, header, edit::read_u64(file, DATA_OFFSET_AT)));
@@ -122,13 +122,18 @@ pub(super) fn fields(format: Format, file: &[u8]) -> Vec<Field> {
 }
 
 /// Whether the checksum of an envelope fits its bytes.
-pub(super) fn fits(file: &[u8], envelope: &Envelope) -> bool {
-    let mut copy = file[envelope.range.clone()].to_vec();
+pub(crate) fn fits(file: &[u8], envelope: &Envelope) -> bool {
+    // A header is as long as it says.
+    let range = match envelope.name.as_str() {
+        "header" => 0..header_bytes(file).clamp(HEADER_CHECKSUM.end, file.len()),
+        _ => envelope.range.clone(),
+    };
+    let mut copy = file[range.clone()].to_vec();
     if envelope.name == "header" {
         ivg_wire::seal_header(&mut copy);
     } else {
         let id = file[edit::CONTENT_ID_AT..].first_chunk().expect("a header");
         ivg_wire::seal(&mut copy, ivg_wire::ContentId(u64::from_le_bytes(*id)));
     }
-    copy == file[envelope.range.clone()]
+    copy == file[range]
 }

@@ -114,6 +114,7 @@ impl Generator {
     fn whole(&mut self, vector: &Vector, vectors: &[Vector]) {
         let (format, id) = (vector.format, id(vector));
         let kind = match verdict(vector.verdict) {
+            _ if vector.both.is_some() => Kind::Precedence,
             Verdict::Invalid => Kind::Negative,
             Verdict::Unsupported => Kind::Forward,
             Verdict::Limit => Kind::Limits,
@@ -142,6 +143,10 @@ impl Generator {
             out,
             clauses: self.clauses.of(vector, kind),
             twin: twin.map(self::id),
+            both: vector
+                .both
+                .as_ref()
+                .map(|both| both.names.each_ref().map(|name| format!("{}/{name}", format.name()))),
             of: None,
             recipe,
             why: vector.why.to_owned(),
@@ -169,6 +174,7 @@ impl Generator {
             clauses: of_command(format, op, refused),
             of: Some(whole.id.clone()),
             twin: None,
+            both: None,
             recipe: None,
             ..whole.clone()
         };
@@ -283,6 +289,7 @@ impl Generator {
                 out: Some(Expected { form: Form::Rows, file, bytes, sha256 }),
                 clauses: table.clauses.iter().map(|&clause| clause.to_owned()).collect(),
                 twin: None,
+                both: None,
                 of: None,
                 recipe: None,
                 why: table.why.to_owned(),

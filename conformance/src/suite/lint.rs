@@ -3,6 +3,7 @@
 use super::diff::compare;
 use super::shown::{grid, mesh};
 use crate::vectors::Format;
+use crate::vectors::both::with_changes_of;
 use conformance_runner::manifest::{Op, Suite, Test, Verdict};
 use conformance_runner::sha256;
 use std::collections::BTreeSet;
@@ -83,13 +84,37 @@ fn defect(suite: &Suite, test: &Test) -> Result<(), String> {
     if again != *recipe {
         return Err("its recipe is not the one that a comparison finds".to_owned());
     }
-    let expected = usize::from(test.bug_class.as_deref() == Some("checksum"));
+    let mut mistakes = vec![test];
+    if let Some(both) = &test.both {
+        let find = |id: &str| suite.test(id).ok_or(format!("{id} is no test"));
+        let single = [find(&both[0])?, find(&both[1])?];
+        let read = |test: &Test| read(test.file.as_deref().unwrap_or(""));
+        let files = [read(single[0])?, read(single[1])?];
+        if with_changes_of(format, &right, files.each_ref().map(Vec::as_slice)).as_ref() != Some(&bytes) {
+            return Err("it has not the changes of its two mistakes".to_owned());
+        }
+        mistakes = single.to_vec();
+        two_mistakes(test, single)?;
+    }
+    let of_checksums = |test: &&Test| test.bug_class.as_deref() == Some("checksum");
+    let expected = mistakes.into_iter().filter(of_checksums).count();
     if unfit.len() != expected {
         return Err(format!("checksums that do not fit: {unfit:?}"));
     }
     let undone = recipe.edits.iter().filter(|edit| !edit.field.ends_with("crc")).count();
     if undone == 0 && expected == 0 {
         return Err("nothing but checksums differs".to_owned());
+    }
+    Ok(())
+}
+
+/// The two mistakes are single ones of the same twin, and the file is refused as that with the first alone.
+fn two_mistakes(test: &Test, single: [&Test; 2]) -> Result<(), String> {
+    if single.iter().any(|one| one.both.is_some() || one.twin != test.twin) {
+        return Err("its mistakes are not single ones of its twin".to_owned());
+    }
+    if (single[0].verdict, single[0].code) != (test.verdict, test.code) {
+        return Err("it is not refused as its first mistake is".to_owned());
     }
     Ok(())
 }

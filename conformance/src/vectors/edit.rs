@@ -6,6 +6,8 @@ use std::ops::Range;
 
 /// Length of the header, u32.
 pub const HEADER_BYTES_AT: usize = 20;
+/// Checksum of the header, u32.
+pub const HEADER_CHECKSUM: Range<usize> = 28..32;
 /// Content id, u64.
 pub const CONTENT_ID_AT: usize = 32;
 /// Where the records begin, u64.
@@ -42,8 +44,7 @@ pub fn in_header(file: &[u8], at: usize, bytes: &[u8]) -> Vec<u8> {
 pub fn in_envelope(file: &[u8], envelope: Range<usize>, at: usize, bytes: &[u8]) -> Vec<u8> {
     assert!(envelope.contains(&at), "the edit lies outside the envelope");
     let mut file = overwritten(file, at, bytes);
-    let content = content_id(&file);
-    seal(&mut file[envelope], content);
+    reseal(&mut file, envelope);
     file
 }
 
@@ -123,6 +124,12 @@ pub fn reseal_header(file: &mut [u8]) {
     let field = file[HEADER_BYTES_AT..].first_chunk().expect("4 bytes");
     let length = file.len().min(u32::from_le_bytes(*field) as usize);
     seal_header(&mut file[..length]);
+}
+
+/// Computes the checksum of a chunk or record anew.
+pub fn reseal(file: &mut [u8], envelope: Range<usize>) {
+    let content = content_id(file);
+    seal(&mut file[envelope], content);
 }
 
 fn content_id(file: &[u8]) -> ContentId {
