@@ -55,7 +55,11 @@ const ORDERS: &[Order] = &[
             "x-411-metadata",
         ],
     ),
-    (Format::Ivg, "COM-REC-05", &["x-105-record-checksum", "x-111-record-id", "x-114-end"]),
+    (
+        Format::Ivg,
+        "COM-REC-05",
+        &["x-105-record-checksum", "x-111-record-id", "x-114-end-generation", "x-114-end"],
+    ),
     (Format::Ivg, "IVG-DIRE-01", &["x-309-directory-type", "x-312-directory-share"]),
     (Format::Ivg, "IVG-EXP-03", &["x-420-index-cut", "x-422-index-length"]),
     (Format::Pmesh, "COM-HDR-03", &["x-101-signature", "x-201-major", "x-102-header-bytes"]),

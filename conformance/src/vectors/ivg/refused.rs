@@ -1,8 +1,8 @@
 //! Files of `.ivg` to refuse.
 
 use super::super::edit::{
-    DATA_OFFSET_AT, FILE_BYTES_AT, HEADER_BYTES_AT, flipped, in_envelope, in_header, last_chunk, overwritten,
-    read_u64, with_chunk,
+    DATA_OFFSET_AT, FILE_BYTES_AT, HEADER_BYTES_AT, flipped, in_envelope, in_header, inserted, last_chunk,
+    overwritten, read_u64, with_chunk,
 };
 use super::super::{Format, Refused, Vector};
 use super::{CHUNK_HEAD, RECORD_HEAD, VALIDITY, at, header, light, range, variants};
@@ -138,6 +138,13 @@ fn records(line: &[u8], small: &[u8]) -> Vec<Refused> {
             "padding that is not zero",
         ),
         (s, "end", wire::END_MISMATCH, other_length, "the end record names another length"),
+        (
+            s,
+            "end-generation",
+            wire::END_MISMATCH,
+            in_envelope(small, end.clone(), end.start + 4, &[1]),
+            "an end record that came again",
+        ),
         (s, "trailing", wire::TRAILING_BYTES, trailing, "a byte behind the end record"),
     ]
 }
@@ -275,6 +282,13 @@ fn chunks(lights: &[u8], meta: &[u8]) -> Vec<Refused> {
         |at: usize, bytes: &[u8]| in_envelope(lights, first.clone(), first.start + CHUNK_HEAD + at, bytes);
     vec![
         (m, "chunk-length", wire::CHUNK_LENGTH, edited(8, &[200]), "a chunk that reaches into the records"),
+        (
+            m,
+            "chunk-room",
+            wire::CHUNK_LENGTH,
+            inserted(meta, read_u64(meta, DATA_OFFSET_AT), &[0; 8]),
+            "too few bytes for a chunk between the last one and the records",
+        ),
         (m, "chunk-padding", wire::CHUNK_PADDING, edited(CHUNK_HEAD + 22, &[1]), "padding that is not zero"),
         (m, "chunk-flags", wire::RESERVED, edited(4, &[2]), "a reserved flag of a chunk"),
         (

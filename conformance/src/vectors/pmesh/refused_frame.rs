@@ -123,6 +123,13 @@ pub(super) fn container(file: &[u8]) -> Vec<Refused> {
             in_envelope(file, end.clone(), end.start + RECORD_HEAD, &[0]),
             "the end record names another length",
         ),
+        (
+            o,
+            "end-generation",
+            wire::END_MISMATCH,
+            in_envelope(file, end.clone(), end.start + 4, &[1]),
+            "an end record that came again",
+        ),
         (o, "trailing", wire::TRAILING_BYTES, [file, &[0]].concat(), "a byte behind the end record"),
         (o, "no-directory", mesh::DIRECTORY_MISSING, no_chunks, "records begin where the directory should"),
     ]
