@@ -147,7 +147,8 @@ impl<'a> Stage<'a> {
 
     /// Share of light that goes straight on from `origin` along `direction` for `distance`, past panes.
     pub(crate) fn passed(&self, lobes: &LobeTable, origin: Vec3, direction: Vec3, distance: f32) -> Vec3 {
-        let (mut share, mut origin, mut left) = (Vec3::ONE, origin, distance);
+        let (mut share, mut origin, mut direction, mut left) = (Vec3::ONE, origin, direction, distance);
+        let end = origin + direction * distance;
         for _ in 0..MOST_PANES {
             let Some(hit) = self.accel.closest_hit(origin, direction, left) else { return share };
             share *= self.surfaces.passed_straight(lobes, &hit, direction);
@@ -156,7 +157,16 @@ impl<'a> Stage<'a> {
             }
             let point = self.surfaces.point(hit.triangle, hit.weights);
             origin = point.origin(point.facing(direction));
-            left -= hit.distance;
+            if distance < f32::MAX {
+                // The end stays where it is: by as much as the start moves off the pane, the same flight would end beyond a light
+                // that it meets at a grazing angle.
+                let way = end - origin;
+                if way.dot(direction) <= 0.0 {
+                    return share;
+                }
+                left = way.length();
+                direction = way / left;
+            }
         }
         Vec3::ZERO
     }

@@ -252,3 +252,6 @@ impl Stage<'_> {
         light.irradiance.as_dvec3() * f64::from(cos)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -39,7 +39,8 @@ pub struct Brightness {
     pub places: usize,
     /// Mean path-traced indirect irradiance, all channels together \[W/m²\].
     pub traced: f64,
-    /// Standard error of `ratio`, as the paths of each place leave it.
+    /// Standard error of `ratio`, as a ratio of means over places (W. Cochran, "Sampling Techniques", 1977, section 6.4): what
+    /// other paths and other places would change. What other photons would is not in it. Infinite for one place.
     pub error: f64,
     /// Mean irradiance that the grid gives over the traced one; 1 is right.
     pub ratio: f64,
@@ -68,6 +69,13 @@ impl Brightness {
         let whole = self.traced.max(DARKEST * mean);
         if whole > 0.0 { self.traced * (self.ratio - 1.0).abs() / whole } else { 0.0 }
     }
+
+    /// Standard error of what [`off`](Self::off) tells, relative to the same.
+    #[must_use]
+    pub fn off_error(&self, mean: f64) -> f64 {
+        let whole = self.traced.max(DARKEST * mean);
+        if whole > 0.0 { self.traced * self.error / whole } else { 0.0 }
+    }
 }
 
 /// What [`Oracle::brightness`] makes of places: all together, then those in each of `boxes`³ equal boxes of the lattice's bounds
@@ -85,7 +93,7 @@ pub fn brightness_of(places: &[LitPlace], lattice: &Lattice, boxes: u16) -> Vec<
             places: 1,
             baked: place.baked,
             traced: place.traced,
-            variance: place.error * place.error,
+            squares: [place.baked * place.baked, place.baked * place.traced, place.traced * place.traced],
         });
     }
     let mut all = Sums::default();
@@ -246,7 +254,8 @@ struct Sums {
     places: usize,
     baked: f64,
     traced: f64,
-    variance: f64,
+    /// Of baked light, of baked and traced, of traced.
+    squares: [f64; 3],
 }
 
 impl Sums {
@@ -254,13 +263,21 @@ impl Sums {
         self.places += other.places;
         self.baked += other.baked;
         self.traced += other.traced;
-        self.variance += other.variance;
+        self.squares.iter_mut().zip(other.squares).for_each(|(sum, square)| *sum += square);
     }
 
     fn brightness(&self, low: DVec3, high: DVec3) -> Brightness {
         let ratio = if self.traced > 0.0 { self.baked / self.traced } else { 0.0 };
-        let error = if self.traced > 0.0 { self.variance.sqrt() / self.traced * ratio } else { 0.0 };
-        let traced = self.traced / self.places.max(1) as f64;
+        let places = self.places as f64;
+        // Sum over places of the square of baked light less `ratio` times the traced: their mean is 0.
+        let [baked, both, traced] = self.squares;
+        let rest = (baked - 2.0 * ratio * both + ratio * ratio * traced).max(0.0);
+        let error = match self.places {
+            _ if self.traced <= 0.0 => 0.0,
+            1 => f64::INFINITY,
+            _ => (rest * places / (places - 1.0)).sqrt() / self.traced,
+        };
+        let traced = self.traced / places.max(1.0);
         Brightness { low, high, places: self.places, traced, error, ratio }
     }
 }

@@ -381,3 +381,108 @@ fn photons_and_paths_agree_about_mirrors_and_glass() {
         }
     }
 }
+
+/// Radiance of a small patch of albedo 1/2 that faces a disk, radius 1/2 and radiance 1, at a distance on its axis, seen by paths with
+/// their standard error. With `mixtures`, a pane that changes nothing lies between the two, and paths are those of mixtures.
+fn patch_before_a_disk(distance: f32, mixtures: bool) -> (f64, f64) {
+    let mut builder = SceneBuilder::default();
+    let grey = builder.material(0.5, 0.0, true);
+    let lamp = builder.material(0.0, 1.0, false);
+    let rim = |n: u32| {
+        let angle = f64::from(n) / 512.0 * 2.0 * PI;
+        (DVec3::new(libm::cos(angle), libm::sin(angle), 0.0) * 0.5).as_vec3()
+    };
+    (0..512).for_each(|n| builder.triangle([Vec3::ZERO, rim(n), rim(n + 1)], lamp));
+    let size = 0.004 * distance;
+    builder.quad(
+        Vec3::new(-0.5, -0.5, 0.0) * size + Vec3::Z * distance,
+        Vec3::X * size,
+        Vec3::Y * size,
+        grey,
+    );
+    if mixtures {
+        let glass = Material {
+            albedo: Vec3::ZERO,
+            transmission: 1.0,
+            refractive_index: 1.0,
+            thin: true,
+            ..Material::default()
+        };
+        let glass = builder.any_material(glass);
+        builder.quad(Vec3::new(-9.0, -9.0, 0.5 * distance), Vec3::X * 18.0, Vec3::Y * 18.0, glass);
+    }
+    let (scene, flat) = builder.build();
+    let oracle = Oracle::new(&scene, &flat).unwrap();
+    let distance = f64::from(distance);
+    let camera = Camera {
+        eye: DVec3::new(0.2, 0.0, 0.7) * distance,
+        target: DVec3::Z * distance,
+        up: DVec3::Y,
+        vertical_fov: 0.002,
+    };
+    let sampling = Sampling { paths: 1000, ..SAMPLING };
+    let picture = oracle.render(&camera, (8, 8), Shown::All, sampling, &Silent).unwrap();
+    let mut mean = Mean::<1>::default();
+    picture.pixels.iter().for_each(|pixel| mean.add(&[f64::from(pixel[1])]));
+    (mean.mean()[0], mean.standard_error()[0])
+}
+
+/// A disk of radius r and radiance L at distance h on its axis gives π L r² / (r² + h²). The lamp counts as near up to a quarter of
+/// the root of its area, 0.22: so close to it that all, much, and none of what reaches the patch is met by chance.
+#[test]
+fn near_lights_are_met_by_chance_and_count_once() {
+    for mixtures in [false, true] {
+        for distance in [0.01, 0.1, 0.2, 0.3, 1.0] {
+            let (found, error) = patch_before_a_disk(distance, mixtures);
+            let h = f64::from(distance);
+            let expected = 0.5 * 0.25 / (0.25 + h * h);
+            // Five standard errors. 512 triangles lack 2.5e-5 of the disk's area; light at most 2e-3 h off the axis is the same to
+            // its square.
+            assert!(
+                (found - expected).abs() < 5.0 * error + 1e-4 * expected,
+                "{found} ± {error} for {expected} at {h}, mixtures {mixtures}"
+            );
+            // 64,000 paths. What is met by chance is the lamp's radiance or nothing, at most 1/2 apart from the mean. What is chosen
+            // on the lamp is at most 16 times its radiance all around (where a near light ends), 1/π of that of each steradian
+            // on average: their standard deviation is below four times the mean. Chosen at 0.01, it would be 25.
+            assert!(error < 4.0 * expected / 64_000_f64.sqrt(), "{error} of {expected} at {h}");
+        }
+    }
+}
+
+/// A closed box that absorbs nothing but in its lamp: the radiance is the lamp's everywhere, however long the paths. The lamp has a
+/// fortieth of all area: a fifth of the light has been reflected more often than paths go on without roulette between white walls.
+#[test]
+fn roulette_between_white_walls_keeps_the_mean() {
+    for mixtures in [false, true] {
+        let mut builder = SceneBuilder::default();
+        let white = builder.material(1.0, 0.0, true);
+        let lamp = builder.material(0.0, 1.0, true);
+        builder.cuboid(Vec3::ZERO, Vec3::ONE, white, true);
+        // 2 s² / (6 + 2 s²) = 1/40.
+        let s = 0.277_35;
+        builder.quad(Vec3::new(0.5 - 0.5 * s, 0.5 - 0.5 * s, 0.5), Vec3::X * s, Vec3::Y * s, lamp);
+        if mixtures {
+            let mirror =
+                Material { specular: 1.0, albedo: Vec3::ZERO, roughness: 0.0, ..Material::default() };
+            let mirror = builder.any_material(mirror);
+            builder.quad(Vec3::new(0.1, 0.1, 0.2), Vec3::X * 0.2, Vec3::Y * 0.2, mirror);
+        }
+        let (scene, flat) = builder.build();
+        let oracle = Oracle::new(&scene, &flat).unwrap();
+        let camera = Camera {
+            eye: DVec3::new(0.2, 0.3, 0.8),
+            target: DVec3::new(0.9, 0.8, 0.4),
+            up: DVec3::Z,
+            vertical_fov: 1.2,
+        };
+        let sampling = Sampling { paths: 64, ..SAMPLING };
+        let picture = oracle.render(&camera, (16, 16), Shown::All, sampling, &Silent).unwrap();
+        let mut mean = Mean::<1>::default();
+        picture.pixels.iter().for_each(|pixel| mean.add(&[f64::from(pixel[1])]));
+        let (found, error) = (mean.mean()[0], mean.standard_error()[0]);
+        // Five standard errors, which tell a loss of the light from beyond the first roulette: 8 %.
+        assert!((found - 1.0).abs() < 5.0 * error, "{found} ± {error}, mixtures {mixtures}");
+        assert!(error < 0.015, "{error}");
+    }
+}
