@@ -32,6 +32,9 @@ mod at {
     pub(super) const BOUNDS_MIN: usize = 104;
     pub(super) const BOUNDS_MAX: usize = 116;
     pub(super) const NORMAL_BITS: usize = 128;
+    pub(super) const UV_BITS: usize = 129;
+    pub(super) const UV_MIN: usize = 132;
+    pub(super) const UV_MAX: usize = 140;
     pub(super) const END: usize = 152;
 }
 
@@ -49,6 +52,7 @@ mod entry {
 const RECORD_HEAD: usize = 8;
 const CHUNK_HEAD: usize = 16;
 
+const CODED_ATTRIBUTES: &str = "0051-coded-attributes";
 const EMPTY: &str = "0001-empty";
 const EQUAL_PACKETS: &str = "0009-equal-packets";
 const OCTAHEDRON: &str = "0003-octahedron";

@@ -6,7 +6,8 @@ use super::super::{Format, Refused, Vector};
 use super::refused_frame as frame;
 use super::refused_packets as packets;
 use super::{
-    CHUNK_HEAD, EMPTY, EQUAL_PACKETS, OCTAHEDRON, ONE_PACKET, RECORD_HEAD, SEAM, at, entry, header, packet,
+    CHUNK_HEAD, CODED_ATTRIBUTES, EMPTY, EQUAL_PACKETS, OCTAHEDRON, ONE_PACKET, RECORD_HEAD, SEAM, at, entry,
+    header, packet,
 };
 use ivg_wire::codes as wire;
 use pmesh_format::codes as mesh;
@@ -22,7 +23,9 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     list.extend(frame::headers(octahedron));
     list.extend(super::forward::refused(octahedron));
     list.extend(frame::counts(twin(EMPTY), twin(SEAM)));
+    list.extend(frame::parameters(octahedron, twin(CODED_ATTRIBUTES)));
     list.extend(directory(octahedron));
+    list.extend(entries(twin(SEAM)));
     list.extend(names(twin(SEAM)));
     list.extend(points(twin("0022-raw-q12"), twin("0027-raw-q12-plane")));
     list.extend(numbers(octahedron, twin(SEAM), twin(ONE_PACKET)));
@@ -96,6 +99,13 @@ fn directory(file: &[u8]) -> Vec<Refused> {
         ),
         (
             o,
+            "entry-faces-fall",
+            mesh::DIRECTORY_COUNTS,
+            number(1, entry::END_FACE, 1),
+            "fewer faces than before, and more again behind",
+        ),
+        (
+            o,
             "entry-missing-face",
             mesh::DIRECTORY_COUNTS,
             number(packets - 1, entry::END_FACE, 7),
@@ -124,6 +134,17 @@ fn directory(file: &[u8]) -> Vec<Refused> {
             error(1, 1000.0),
             "an error greater than that of the packet before",
         ),
+    ]
+}
+
+/// With seams, wedges need not grow with the vertices, so that they do not tell what is wrong with these.
+fn entries(seam: &[u8]) -> Vec<Refused> {
+    let vertices = |mistake, k, end: u32, why| {
+        (SEAM, mistake, mesh::DIRECTORY_COUNTS, in_directory(seam, k, entry::END_VERTEX, end), why)
+    };
+    vec![
+        vertices("entry-order-seams", 1, 3, "a packet without a vertex, with a wedge"),
+        vertices("entry-base-seams", 0, 2, "a first packet without the whole base, with its wedges"),
     ]
 }
 

@@ -5,7 +5,7 @@ use super::super::Refused;
 use super::super::edit::in_envelope;
 use super::dictated::{MOST, answered, cut_where_refused, ended, overlapping};
 use super::refused::{in_directory, payload, with_payload};
-use super::{RECORD_HEAD, entry, header, packet};
+use super::{CODED_ATTRIBUTES, RECORD_HEAD, entry, header, packet};
 use crate::reference::LAST_STATES;
 use ivg_wire::{Code, Part};
 use pmesh_format::{Limits, check, codes as mesh};
@@ -14,7 +14,6 @@ const CLOSED: &str = "0033-coded-q12";
 const EXACT: &str = "0030-coded-f32";
 const IRREGULAR: &str = "0043-coded-irregular";
 const TRIANGLE: &str = "0041-coded-triangle";
-const ATTRIBUTES: &str = "0051-coded-attributes";
 const HUB: &str = "0050-coded-hub";
 const NORMALS: &str = "0054-coded-normals";
 const WEDGES: &str = "0057-coded-wedges";
@@ -35,7 +34,7 @@ fn answers<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
     };
     // Not as expected; a residual of the greatest octave that an answer of 20 names.
     let far = [0, 15, 20, MOST, MOST];
-    let (closed, attributes) = (twin(CLOSED), twin(ATTRIBUTES));
+    let (closed, attributes) = (twin(CLOSED), twin(CODED_ATTRIBUTES));
     let faces = header(closed).packets[1].faces.end;
     // PMESH-COD-12: of a packet with nothing before it.
     let first = &header(closed).packets[0];
@@ -130,7 +129,7 @@ fn answers<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             "a packet that ends with the face that the directory does not give it",
         ),
         (
-            ATTRIBUTES,
+            CODED_ATTRIBUTES,
             "coded-wedges-few",
             mesh::WEDGE_COUNT,
             in_directory(attributes, few, entry::END_WEDGE, wedges + 1),
@@ -162,14 +161,14 @@ fn answers<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
         ),
         other(NORMALS, "normal", &far, "coded-normal", mesh::ATTRIBUTE, "a normal outside its square"),
         other(
-            ATTRIBUTES,
+            CODED_ATTRIBUTES,
             "texture coordinates",
             &far,
             "coded-uv",
             mesh::ATTRIBUTE,
             "texture coordinates outside their lattice",
         ),
-        other(ATTRIBUTES, "colour", &far, "coded-colour", mesh::ATTRIBUTE, "a colour outside 0 to 255"),
+        other(CODED_ATTRIBUTES, "colour", &far, "coded-colour", mesh::ATTRIBUTE, "a colour outside 0 to 255"),
         other(
             NORMALS,
             "normal of the base",
@@ -252,7 +251,7 @@ fn bytes<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
     let last = header(closed).packet_count() - 1;
     let whole = payload(closed, last);
     let faces = header(closed).packets[1].faces.end;
-    let wedges = header(twin(ATTRIBUTES)).packets[0].wedges.end;
+    let wedges = header(twin(CODED_ATTRIBUTES)).packets[0].wedges.end;
     let hub = payload(twin(HUB), 0);
     let search = |name: &'static str, mistake: &'static str, code: Code, why: &'static str| {
         (name, mistake, code, one_byte(twin(name), code), why)
@@ -273,19 +272,24 @@ fn bytes<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             "a word behind the last symbol of a packet that is long enough",
         ),
         (
-            ATTRIBUTES,
+            CODED_ATTRIBUTES,
             "coded-wedges-many",
             mesh::WEDGE_COUNT,
-            in_directory(twin(ATTRIBUTES), 0, entry::END_WEDGE, wedges - 1),
+            in_directory(twin(CODED_ATTRIBUTES), 0, entry::END_WEDGE, wedges - 1),
             "the directory gives a packet a wedge less than it brings",
         ),
         search(
-            ATTRIBUTES,
+            CODED_ATTRIBUTES,
             "coded-switch",
             mesh::SWITCH,
             "a corner switches, but no wedge becomes the one that it has",
         ),
-        search(ATTRIBUTES, "coded-attribute", mesh::ATTRIBUTE, "a value outside what it is quantised to"),
+        search(
+            CODED_ATTRIBUTES,
+            "coded-attribute",
+            mesh::ATTRIBUTE,
+            "a value outside what it is quantised to",
+        ),
         (
             CLOSED,
             "coded-bytes",

@@ -5,7 +5,7 @@ use super::super::edit::{
     DATA_OFFSET_AT, FILE_BYTES_AT, HEADER_BYTES_AT, flipped, in_envelope, in_header, overwritten, read_u64,
     with_chunk,
 };
-use super::{CHUNK_HEAD, EMPTY, EQUAL_PACKETS, OCTAHEDRON, RECORD_HEAD, SEAM, at, packet};
+use super::{CHUNK_HEAD, CODED_ATTRIBUTES, EMPTY, EQUAL_PACKETS, OCTAHEDRON, RECORD_HEAD, SEAM, at, packet};
 use ivg_wire::codes as wire;
 use pmesh_format::codes as mesh;
 
@@ -188,6 +188,13 @@ pub(super) fn headers(file: &[u8]) -> Vec<Refused> {
         ),
         (
             o,
+            "vertices-and-wedges",
+            mesh::COUNTS,
+            edited(at::VERTEX_COUNT, &[(1u32 << 30) + 1; 2].map(u32::to_le_bytes).concat()),
+            "more vertices than the format holds, and as many wedges",
+        ),
+        (
+            o,
             "wedge-count",
             mesh::COUNTS,
             count(at::WEDGE_COUNT, 7),
@@ -230,6 +237,13 @@ pub(super) fn headers(file: &[u8]) -> Vec<Refused> {
         (o, "bounds-nan", mesh::BOUNDS, edited(at::BOUNDS_MIN, &nan), "bounds that are no number"),
         (
             o,
+            "bounds-infinite",
+            mesh::BOUNDS,
+            edited(at::BOUNDS_MIN, &f32::NEG_INFINITY.to_le_bytes()),
+            "bounds without end, which hold every position",
+        ),
+        (
+            o,
             "bounds-crossed",
             mesh::BOUNDS,
             edited(at::BOUNDS_MAX + 4, &(-2.0f32).to_le_bytes()),
@@ -256,6 +270,45 @@ pub(super) fn counts(empty: &[u8], seam: &[u8]) -> Vec<Refused> {
             in_header(seam, at::WEDGE_COUNT, &[4]),
             "fewer wedges than vertices",
         ),
+        (
+            SEAM,
+            "wedges-too-many",
+            mesh::COUNTS,
+            in_header(seam, at::WEDGE_COUNT, &((1u32 << 30) + 1).to_le_bytes()),
+            "more wedges than the format holds",
+        ),
         (SEAM, "wedges-bare", mesh::COUNTS, bare, "several wedges a vertex, and no attribute to differ in"),
+    ]
+}
+
+/// What coded attributes are quantised with (PMESH-HDR-08): in a file with coded texture coordinates, and in one without.
+pub(super) fn parameters(plain: &[u8], coded: &[u8]) -> Vec<Refused> {
+    let of = |twin, file: &[u8], mistake, field: usize, bytes: &[u8], why| {
+        (twin, mistake, mesh::PARAMETERS, in_header(file, field, bytes), why)
+    };
+    let plain = |mistake, field, bytes: &[u8], why| of(OCTAHEDRON, plain, mistake, field, bytes, why);
+    let coded = |mistake, field, bytes: &[u8], why| of(CODED_ATTRIBUTES, coded, mistake, field, bytes, why);
+    let number = f32::to_le_bytes;
+    vec![
+        coded("normal-bits-few", at::NORMAL_BITS, &[3], "fewer bits of normals than there may be"),
+        coded("normal-bits-many", at::NORMAL_BITS, &[17], "more bits of normals than there may be"),
+        coded("uv-bits-few", at::UV_BITS, &[0], "no bits of texture coordinates"),
+        coded("uv-bits-many", at::UV_BITS, &[17], "more bits of texture coordinates than there may be"),
+        plain("uv-bits-unused", at::UV_BITS, &[10], "bits of texture coordinates in a file without them"),
+        coded("uv-min-infinite", at::UV_MIN, &number(f32::NEG_INFINITY), "a bound without end"),
+        plain(
+            "uv-min-unused",
+            at::UV_MIN,
+            &number(-1.0),
+            "a bound of texture coordinates that are not there",
+        ),
+        coded("uv-max-nan", at::UV_MAX + 4, &number(f32::NAN), "a bound that is no number"),
+        coded(
+            "uv-max-crossed",
+            at::UV_MAX,
+            &number(0.0),
+            "bounds of texture coordinates that are inside out",
+        ),
+        plain("uv-max-unused", at::UV_MAX, &number(1.0), "a bound of texture coordinates that are not there"),
     ]
 }
