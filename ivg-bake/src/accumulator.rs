@@ -356,6 +356,7 @@ impl Accumulator {
         let stats = BakeStats {
             photons,
             paths: 0,
+            rough_vertices: 0,
             flights: whole.books.flights,
             emitted: watts(whole.books.emitted),
             absorbed: watts(whole.books.absorbed),

@@ -57,12 +57,13 @@ impl EndedBy {
 pub struct AccuracyReport {
     /// The error asked for.
     pub asked: f64,
-    /// The error that the grid has at most, with [`CONFIDENCE`].
+    /// The error that the grid has at most, with [`CONFIDENCE`]; of noise alone where the bias is not known.
     pub reached: f64,
     /// How much of it is noise: the estimate.
     pub noise: f64,
-    /// How much of it is bias: the estimate, 0 where it is less than can be told from noise.
-    pub bias: f64,
+    /// How much of it is bias: the estimate, 0 where it is less than can be told from noise; `None` if the bake ended before
+    /// bias was measured at vertices enough.
+    pub bias: Option<f64>,
     /// Why the bake ended.
     pub ended_by: EndedBy,
     /// Batches of photons that the noise was estimated from.
@@ -84,10 +85,10 @@ pub struct AccuracyReport {
 }
 
 impl AccuracyReport {
-    /// Whether the grid is as accurate as was asked for.
+    /// Whether the grid is known to be as accurate as was asked for.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.reached <= self.asked
+        self.bias.is_some() && self.reached <= self.asked
     }
 }
 
@@ -100,6 +101,8 @@ pub(crate) struct Simulated {
     /// Paths traced to gather light.
     pub(crate) paths: u64,
     pub(crate) accuracy: Option<AccuracyReport>,
+    /// Vertices that have fewer paths than asked for, since the time was up.
+    pub(crate) rough: usize,
 }
 
 /// What bounds are allowed to be wrong by at look number `look`, from 1: all of them together 1 − [`CONFIDENCE`].

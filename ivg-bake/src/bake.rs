@@ -39,6 +39,8 @@ pub struct BakeStats {
     pub photons: u64,
     /// Paths traced to gather light at vertices.
     pub paths: u64,
+    /// Vertices that [`Estimator::Gather`] traced fewer paths for than asked for, since the monitor had enough.
+    pub rough_vertices: usize,
     /// Straight flights of photons between surfaces: rays traced for them.
     pub flights: u64,
     /// Power that all lights emit \[W\], linear RGB, as the photons sampled it.
@@ -134,7 +136,7 @@ fn bake_ready(
         (Estimator::Gather, Quantity::Radiance) => gathering::run::<ivg_format::RadianceHarmonics>(&job)?,
         _ => Chosen::new(options, ready.cells, &surroundings.regions)?.simulate(&job)?,
     };
-    let Simulated { values, books, photons, paths, accuracy } = simulated;
+    let Simulated { values, books, photons, paths, accuracy, rough } = simulated;
     let unit = ready.stage.emitters.total_power() / photons.max(1) as f64;
     let watts = |quanta: [i128; 3]| DVec3::from(quanta.map(|q| q as f64)) * (unit / Books::QUANTA);
     let Surroundings { validity, blocked_edges, .. } = surroundings;
@@ -142,6 +144,7 @@ fn bake_ready(
     let stats = BakeStats {
         photons,
         paths,
+        rough_vertices: rough,
         flights: books.flights,
         emitted: watts(books.emitted),
         absorbed: watts(books.absorbed),
@@ -207,7 +210,7 @@ where
     let power = job.power() / photons as f64;
     let mut values = estimate.values(sums, job.ready.cells.len(), power);
     job.carry(&mut values)?;
-    Ok(Simulated { values: values.into(), books, photons, paths: 0, accuracy: None })
+    Ok(Simulated { values: values.into(), books, photons, paths: 0, accuracy: None, rough: 0 })
 }
 
 /// The estimator of the options.

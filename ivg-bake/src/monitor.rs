@@ -10,10 +10,17 @@ pub trait Monitor: Sync {
         false
     }
 
-    /// Whether to end early with the photons traced so far, as when a time is up; asked between batches of photons. The grid
-    /// is then that of the number of photons that [`BakeStats`](crate::BakeStats) tells.
+    /// The share of the time that the bake may take that has passed, 1 when it is up; `None`: it may take what it needs. A bake
+    /// with little time keeps some of it for measuring how far off it is.
+    fn time_spent(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether to end early with what there is, as when a time is up; asked between batches of photons and between the
+    /// vertices that light is gathered at. The grid is then that of the number of photons that
+    /// [`BakeStats`](crate::BakeStats) tells.
     fn enough(&self) -> bool {
-        false
+        self.time_spent().is_some_and(|share| share >= 1.0)
     }
 
     /// A part of the work begins. Called from one thread.

@@ -52,6 +52,8 @@ const COARSER: f64 = 1.044_273_782_427_413_8;
 pub struct ResolutionLimits<'a> {
     /// The most vertices.
     pub vertices: u64,
+    /// The vertices that there is time to look around from before the first photon, if time is short.
+    pub prepared: Option<u64>,
     /// The photons that there is time for and the relative noise that they may leave, if time is short. Noise is that of
     /// [`AccuracyReport`](crate::AccuracyReport).
     pub photons: Option<(u64, f64)>,
@@ -69,6 +71,8 @@ pub enum Limited {
     Vertices,
     /// The size of the file.
     Size,
+    /// The vertices that there is time to look around from.
+    Preparation,
     /// The photons that there is time for.
     Photons,
 }
@@ -80,6 +84,7 @@ impl Limited {
             Self::Axis => "an axis has no more vertices",
             Self::Vertices => "a grid has no more vertices",
             Self::Size => "the file is to be no larger",
+            Self::Preparation => "a finer one takes longer to prepare than there is time for",
             Self::Photons => "the photons that there is time for leave too much noise on a finer one",
         }
     }
@@ -177,6 +182,7 @@ pub fn resolution(
     let exceeded = [
         (Limited::Vertices, &(|dims| vertices(dims) > limits.vertices) as &dyn Fn([u16; 3]) -> bool),
         (Limited::Size, &|dims| !(limits.fits)(dims)),
+        (Limited::Preparation, &|dims| limits.prepared.is_some_and(|most| vertices(dims) > most)),
         (Limited::Photons, &noisy),
     ];
     let mut dims = lattice.dims(steps);

@@ -12,12 +12,15 @@ use crate::workers::Workers;
 /// Photons that a thread takes at a time, and the pieces that shards are dealt.
 pub(crate) const PHOTONS_A_PIECE: u64 = 2048;
 
-/// Photons between two questions whether there are enough: so many, then an eighth of those traced, in whole pieces.
+/// Photons between two questions whether there are enough: so many, then a share of those traced, in whole pieces.
 const PHOTONS_A_STRETCH: u64 = 32 * PHOTONS_A_PIECE;
+
+/// One part in so many of the photons traced: a time that is up is exceeded by no more than that.
+const STRETCHES: u64 = 32;
 
 /// The end of the stretch of photons that begins at `first`, of `last` in all, for each of `shards`.
 pub(crate) fn stretch(first: u64, last: u64, shards: u64) -> u64 {
-    let longer = first / 8 / PHOTONS_A_PIECE * PHOTONS_A_PIECE;
+    let longer = first / STRETCHES / PHOTONS_A_PIECE * PHOTONS_A_PIECE;
     let photons = PHOTONS_A_STRETCH.saturating_mul(shards).max(longer);
     first.saturating_add(photons).min(last)
 }

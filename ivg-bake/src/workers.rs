@@ -18,6 +18,11 @@ pub(crate) struct Workers<'a> {
 const BATCH: usize = 32;
 
 impl Workers<'_> {
+    /// Whether so much of the time, as a share of all that there is, has passed, or the monitor has enough.
+    pub(crate) fn is_late(&self, share: f64) -> bool {
+        self.monitor.time_spent().is_some_and(|spent| spent >= share) || self.monitor.enough()
+    }
+
     /// Runs `work` on every thread. It asks for pieces of 0..`pieces` through the function it is given, until there is
     /// none left or the monitor cancels; each piece is handed out once.
     ///
@@ -74,6 +79,30 @@ pub(crate) fn map<T: Send>(
     let mut parts = parts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     parts.sort_by_key(|(piece, _)| *piece);
     Ok(parts.into_iter().flat_map(|(_, part)| part).collect())
+}
+
+/// `function` of the indices below `count` one by one until [`Workers::is_late`]: what is begun is ended, so that the results
+/// are those of the first few indices, in order.
+///
+/// # Errors
+///
+/// [`BakeError::Cancelled`].
+pub(crate) fn map_until<T: Send>(
+    workers: &Workers<'_>,
+    share: f64,
+    count: usize,
+    function: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, BakeError> {
+    let results: Mutex<Vec<(u64, T)>> = Mutex::new(Vec::new());
+    workers.run(count as u64, &AtomicU64::new(0), |take| {
+        while let Some(index) = if workers.is_late(share) { None } else { take() } {
+            let result = function(index as usize);
+            results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((index, result));
+        }
+    })?;
+    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    results.sort_by_key(|(index, _)| *index);
+    Ok(results.into_iter().map(|(_, result)| result).collect())
 }
 
 /// Items of a chunk of [`map_chunks`]: the chunks do not depend on how many threads there are.

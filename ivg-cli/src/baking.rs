@@ -25,6 +25,8 @@ use crate::writing::{self, Extras};
 pub(crate) struct LoadedScene {
     pub(crate) scene: Scene,
     pub(crate) flat: FlatScene,
+    /// When reading began.
+    pub(crate) since: Instant,
 }
 
 impl LoadedScene {
@@ -34,18 +36,20 @@ impl LoadedScene {
     }
 
     pub(crate) fn load(path: &Path, lights: Option<&Path>) -> Result<Self, Failure> {
+        let since = Instant::now();
         let options = ImportOptions { lights: lights.map(Into::into) };
         let scene = import::load(path, &options).map_err(|error| Failure::scene(path, &error))?;
         for warning in &scene.warnings {
             eprintln!("ivg: warning: {}", shown(warning));
         }
-        Self::from_scene(scene)
+        Ok(Self { since, ..Self::from_scene(scene)? })
     }
 
     pub(crate) fn from_scene(scene: Scene) -> Result<Self, Failure> {
         scene.check().map_err(Failure::new)?;
+        let since = Instant::now();
         let flat = scene.flatten();
-        Ok(Self { scene, flat })
+        Ok(Self { scene, flat, since })
     }
 }
 
@@ -57,7 +61,7 @@ pub(crate) struct Baked {
     pub(crate) stats: BakeStats,
     pub(crate) accuracy: Option<AccuracyReport>,
     pub(crate) file: Vec<u8>,
-    /// Wall time of pilot and bake.
+    /// Wall time since reading the scene began.
     pub(crate) elapsed: Duration,
     /// Why the grid is as fine as it is, if the scene decided.
     pub(crate) grid_reason: Option<String>,
@@ -71,7 +75,7 @@ pub(crate) fn plan(
     planning: PlanOptions,
     options: &BakeOptions,
 ) -> Result<(EffectPlan, Option<PilotReport>), Failure> {
-    let LoadedScene { scene, flat } = loaded;
+    let LoadedScene { scene, flat, .. } = loaded;
     let mut plan = analysed(loaded, planning);
     if scene.require_light().is_err() {
         return Ok((plan, None));
@@ -110,15 +114,13 @@ pub(crate) fn bake_with(
             options.estimator.name(),
         )));
     }
-    let start = Instant::now();
     let grid_reason = decide_grid(loaded, settings, &mut options)?;
     let mut plan = analysed(loaded, planning_for(settings.effects, settings.accuracy));
     report_unsupported(&loaded.scene, &plan);
-    let watch = Watch::new(start, settings.time, &options);
+    let watch = Watch::new(loaded.since, settings.time, &options);
     let result = simulate(loaded, &mut plan, &options, &watch, sums);
     let stages = watch.finish();
     let result = result?;
-    let elapsed = start.elapsed();
     let stored = Stored {
         encoding: settings.encoding,
         order: settings.order,
@@ -135,6 +137,7 @@ pub(crate) fn bake_with(
         )));
     }
     let (grid, stats, accuracy) = (result.grid, result.stats, result.accuracy);
+    let elapsed = loaded.since.elapsed();
     Ok(Baked { plan, grid, stats, accuracy, file, elapsed, stages, grid_reason })
 }
 
@@ -155,7 +158,7 @@ fn simulate(
     watch: &Watch,
     files: SumFiles<'_>,
 ) -> Result<BakeResult, Failure> {
-    let LoadedScene { scene, flat } = loaded;
+    let LoadedScene { scene, flat, .. } = loaded;
     if files.resume.is_none() && files.checkpoint.is_none() {
         return ivg_bake::bake_measured(scene, flat, plan, options, watch).map_err(Failure::new);
     }
@@ -188,7 +191,7 @@ pub(crate) fn shard(loaded: &LoadedScene, settings: &BakeSettings, shard: Shard)
     loaded.scene.require_light().map_err(Failure::new)?;
     let mut options = bake_options(settings);
     decide_grid(loaded, settings, &mut options)?;
-    let LoadedScene { scene, flat } = loaded;
+    let LoadedScene { scene, flat, .. } = loaded;
     let mut plan = analysed(loaded, planning(settings.effects));
     ivg_bake::measure_reflections(scene, flat, &mut plan, &options).map_err(Failure::new)?;
     report_unsupported(&loaded.scene, &plan);
@@ -222,6 +225,9 @@ const AUTO_BOUNCES: u32 = 16;
 /// Share of a time that photons are traced in: the rest is for what comes before and after.
 const TRACING_SHARE: f64 = 0.5;
 
+/// Share of a time that vertices may look around in before the first photon.
+const PREPARATION_SHARE: f64 = 0.2;
+
 /// Noise that a grid chosen for a time may have, where no accuracy is asked for.
 const TIMED_NOISE: f64 = 0.02;
 
@@ -237,23 +243,28 @@ fn decide_grid(
         }
         return Ok(None);
     }
-    let LoadedScene { scene, flat } = loaded;
+    let LoadedScene { scene, flat, .. } = loaded;
     let mut plan = analysed(loaded, planning_for(settings.effects, settings.accuracy));
     plan.max_bounces = plan.max_bounces.min(AUTO_BOUNCES);
-    let photons = match settings.time {
+    let (photons, prepared) = match settings.time {
         Some(seconds) => {
             let timed = BakeOptions { photons: PHOTONS, accuracy: None, ..options.clone() };
             let timed = BakeOptions { estimator: Estimator::TrackLength, ..timed };
             let report = ivg_bake::pilot(scene, flat, &mut plan.clone(), &timed).map_err(Failure::new)?;
             let each = (report.ray_seconds + report.deposit_seconds) / PHOTONS as f64;
+            let left = (seconds - loaded.since.elapsed().as_secs_f64()).max(0.0);
             let threads = options.threads.unwrap_or_else(cores) as f64;
-            let photons = (TRACING_SHARE * seconds * threads / each.max(f64::MIN_POSITIVE)) as u64;
-            Some((photons, settings.accuracy.unwrap_or(TIMED_NOISE)))
+            let affordable =
+                |share: f64, each: f64| (share * left * threads / each.max(f64::MIN_POSITIVE)) as u64;
+            let photons = affordable(TRACING_SHARE, each);
+            let vertices = timed.dims.iter().map(|&n| f64::from(n)).product::<f64>();
+            let prepared = affordable(PREPARATION_SHARE, report.preparation_seconds / vertices);
+            (Some((photons, settings.accuracy.unwrap_or(TIMED_NOISE))), Some(prepared))
         }
-        None => None,
+        None => (None, None),
     };
     let fits = |dims| settings.budget.is_none_or(|budget| file_bytes(dims, settings, scene) <= budget);
-    let limits = ResolutionLimits { vertices: AUTO_VERTICES, photons, fits: &fits };
+    let limits = ResolutionLimits { vertices: AUTO_VERTICES, prepared, photons, fits: &fits };
     let found = ivg_bake::resolution(scene, flat, &plan, options, &limits).map_err(Failure::new)?;
     options.dims = found.dims;
     Ok(Some(found.reason()))

@@ -37,7 +37,7 @@ impl<'a> Live<'a> {
             .collect();
         let replaced: HashSet<usize> = streamed.iter().map(|&index| manifest.meshes[index].mesh).collect();
         scene.nodes.retain(|node| !replaced.contains(&(node.mesh as usize)));
-        let LoadedScene { scene, flat } = LoadedScene::from_scene(scene)?;
+        let LoadedScene { scene, flat, .. } = LoadedScene::from_scene(scene)?;
         let scene = RenderScene::from_scene(&scene, &flat, camera);
         let all: Vec<u32> = (0..scene.materials.len() as u32).collect();
         let mut meshes = Vec::new();

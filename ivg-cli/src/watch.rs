@@ -1,5 +1,6 @@
 //! Watches a bake: progress, whether the time is up, and how long each part takes.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -7,12 +8,19 @@ use ivg_bake::{BakeOptions, BakeStage, Estimator, Monitor};
 
 use crate::progress::BakeBar;
 
+/// The share of a time after which it is said that little is left.
+const LITTLE_LEFT: f64 = 0.7;
+
 /// Watches one bake.
 #[derive(Debug)]
 pub(crate) struct Watch {
     bar: BakeBar,
-    /// When the bake is to end.
-    end: Option<Instant>,
+    /// When reading the scene began.
+    start: Instant,
+    /// How long everything may take since then \[s\].
+    seconds: Option<f64>,
+    /// Whether it has been said that the time is too short.
+    warned: AtomicBool,
     stages: Mutex<Stages>,
 }
 
@@ -43,7 +51,7 @@ impl StageTime {
 }
 
 impl Watch {
-    /// Watches a bake that began at `start` and is to end after so many `seconds`.
+    /// Watches a bake of a scene whose reading began at `start`; all is to end after so many `seconds`.
     pub(crate) fn new(start: Instant, seconds: Option<f64>, options: &BakeOptions) -> Self {
         let (unit, total) = match options.estimator {
             Estimator::Gather => ("vertices", options.dims.iter().map(|&n| u64::from(n)).product()),
@@ -51,7 +59,9 @@ impl Watch {
         };
         Self {
             bar: BakeBar::new("bake", total, unit),
-            end: seconds.map(|seconds| start + Duration::from_secs_f64(seconds)),
+            start,
+            seconds,
+            warned: AtomicBool::new(false),
             stages: Mutex::default(),
         }
     }
@@ -62,6 +72,26 @@ impl Watch {
         let mut stages = self.stages.into_inner().unwrap_or_else(PoisonError::into_inner);
         stages.end();
         stages.times
+    }
+}
+
+impl Watch {
+    /// Says, before the first photon or path, that there is little time left for them.
+    fn warn_of_preparation(&self) {
+        let Some(seconds) = self.seconds else { return };
+        let taken = self.start.elapsed().as_secs_f64();
+        if self.warned.swap(true, Ordering::Relaxed) || taken < LITTLE_LEFT * seconds {
+            return;
+        }
+        let left = if taken < seconds {
+            "little is left for light"
+        } else {
+            "the bake takes longer, and traces as little as it can"
+        };
+        eprintln!(
+            "ivg: warning: reading and preparing the scene took {taken:.1} s of the {seconds} s of --time: {left}; a coarser --grid \
+             takes less"
+        );
     }
 }
 
@@ -85,11 +115,14 @@ impl Monitor for Watch {
         self.bar.progress(done, total);
     }
 
-    fn enough(&self) -> bool {
-        self.end.is_some_and(|end| Instant::now() >= end)
+    fn time_spent(&self) -> Option<f64> {
+        self.seconds.map(|seconds| self.start.elapsed().as_secs_f64() / seconds)
     }
 
     fn stage(&self, stage: BakeStage) {
+        if stage != BakeStage::Preparation {
+            self.warn_of_preparation();
+        }
         let mut stages = self.stages.lock().unwrap_or_else(PoisonError::into_inner);
         stages.end();
         stages.now = Some((stage, Instant::now(), processor_time()));

@@ -9,16 +9,17 @@ use crate::bake::Job;
 use crate::estimate::held::Held;
 use crate::estimate::vertex_gather::{Enough, FEWEST_PATHS, VertexGather};
 use crate::trace::Books;
-use crate::workers::map;
+use crate::workers::{map, map_until};
 use crate::{BakeError, BakeStage};
 
-/// Vertices gathered between two questions whether the time is up.
-const BLOCK: usize = 1024;
+/// Paths of each vertex before anything else if there is little time: the fewest that tell their variance.
+const FIRST_PATHS: u32 = 128;
 
 /// Share of the squared error asked for that vertices may have in the mean, so that the bound stays below it.
 const AIM: f64 = 0.9;
 
-/// Gathers at every vertex that light reaches: with the options' paths, or to their accuracy.
+/// Gathers at every vertex that light reaches: with the options' paths, or to their accuracy. If there is a limit to the time, every
+/// vertex has a few paths first, and as many as it is to have afterwards.
 pub(crate) fn run<V: Held + Default>(job: &Job<'_>) -> Result<Simulated, BakeError>
 where
     GridValues: From<Vec<V>>,
@@ -32,31 +33,45 @@ where
         job.workers.monitor.progress(done.min(vertices.len() as u64), vertices.len() as u64);
         gather
     };
-    let paths = if job.options.accuracy.is_some() { FEWEST_PATHS } else { job.options.paths };
-    let mut gathers = map(&job.workers, vertices.len(), |n| one(vertices[n], Enough::Paths(paths)))?;
+    let all = Enough::Paths(job.options.paths);
+    let first = match (job.options.accuracy, job.workers.monitor.time_spent()) {
+        (_, Some(_)) => Enough::Roughly(FIRST_PATHS),
+        (Some(_), None) => Enough::Paths(FEWEST_PATHS),
+        (None, None) => all,
+    };
+    let mut gathers = map(&job.workers, vertices.len(), |n| one(vertices[n], first))?;
     let mut paths: u64 = gathers.iter().map(|gather| u64::from(gather.paths)).sum();
-    let mut accuracy = None;
-    if let Some(asked) = job.options.accuracy {
-        let signal = signal(&gathers);
-        let aim = AIM * asked.powi(2) * signal / vertices.len().max(1) as f64;
-        let enough = Enough::Variance { variance: aim, most: job.options.paths };
-        let mut stopped = false;
-        for (first, block) in vertices.chunks(BLOCK).enumerate().map(|(n, block)| (n * BLOCK, block)) {
-            stopped = job.workers.monitor.enough();
-            if stopped {
-                break;
-            }
-            let finer = map(&job.workers, block.len(), |n| one(block[n], enough))?;
-            paths += finer.iter().map(|gather| u64::from(gather.paths)).sum::<u64>();
-            gathers[first..].iter_mut().zip(finer).for_each(|(rough, finer)| *rough = finer);
-        }
-        accuracy = Some(report(&gathers, asked, aim, stopped, paths));
+    let aim = job
+        .options
+        .accuracy
+        .map(|asked| AIM * asked.powi(2) * signal(&gathers) / vertices.len().max(1) as f64);
+    let wanted = aim.map_or(all, |variance| Enough::Variance { variance, most: job.options.paths });
+    let mut rough = 0;
+    if wanted != first {
+        done.store(0, Ordering::Relaxed);
+        // Those left rough if the time is up are not all in one place.
+        let order = scattered(vertices.len());
+        let finer = map_until(&job.workers, 1.0, order.len(), |n| one(vertices[order[n]], wanted))?;
+        paths += finer.iter().map(|gather| u64::from(gather.paths)).sum::<u64>();
+        rough = order.len() - finer.len();
+        order.into_iter().zip(finer).for_each(|(n, finer)| gathers[n] = finer);
     }
+    let accuracy = job.options.accuracy.zip(aim);
+    let accuracy = accuracy.map(|(asked, aim)| report(&gathers, asked, aim, rough > 0, paths));
     let mut values = vec![V::default(); job.ready.cells.len()];
     for (vertex, gather) in vertices.into_iter().zip(&gathers) {
         values[vertex] = V::gathered(&gather.numbers);
     }
-    Ok(Simulated { values: values.into(), books: Books::default(), photons: 0, accuracy, paths })
+    Ok(Simulated { values: values.into(), books: Books::default(), photons: 0, accuracy, paths, rough })
+}
+
+/// The numbers below `count`, each once, neighbours far from each other: steps of the golden section.
+fn scattered(count: usize) -> Vec<usize> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let mut order: Vec<usize> = (0..count).collect();
+    let place = |n: usize| (n as f64 * GOLDEN).fract();
+    order.sort_by(|&a, &b| place(a).total_cmp(&place(b)));
+    order
 }
 
 /// Sum of the squares of the light, without that of its noise.
@@ -79,7 +94,7 @@ fn report(gathers: &[VertexGather], asked: f64, aim: f64, stopped: bool, paths: 
         asked,
         reached,
         noise: relative(noise),
-        bias: 0.0,
+        bias: Some(0.0),
         ended_by: match (stopped, reached <= asked) {
             (true, _) => EndedBy::Monitor,
             (_, true) => EndedBy::Accuracy,

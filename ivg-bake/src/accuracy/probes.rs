@@ -15,7 +15,7 @@ use crate::estimate::held::{AXES, Axes, Held, energy};
 use crate::estimate::vertex_gather::Enough;
 use crate::sampling::rng::{Purpose, Stream};
 use crate::stage::Stage;
-use crate::workers::{Workers, map};
+use crate::workers::{Workers, map_until};
 
 /// Shares of the vertices in the classes by change of light, the flattest first.
 const CLASSES: [f64; 3] = [0.6, 0.3, 0.1];
@@ -53,6 +53,8 @@ struct Probe {
 /// The stratum with most bias.
 #[derive(Debug)]
 pub(crate) struct Worst {
+    stratum: usize,
+    /// Its vertices, in the order to gather at them: those last at which the bias is known.
     pub(crate) vertices: Vec<usize>,
     /// Mean squared bias of one of them \[(W/m²)²\].
     pub(crate) squared: f64,
@@ -141,7 +143,9 @@ impl Probes {
             .collect()
     }
 
-    /// Gathers at further vertices, so many of each stratum.
+    /// Gathers at further vertices, so many of each stratum, as long as less than the share `late` of the time has passed. The
+    /// strata take turns, so that something is known of all of them if time is short.
+    #[expect(clippy::too_many_arguments, reason = "what gathering needs, and how much of it")]
     pub(crate) fn gather<V: Held>(
         &mut self,
         more: &[usize],
@@ -149,19 +153,21 @@ impl Probes {
         eyes: &[Vec3],
         seed: u64,
         enough: Enough,
+        late: f64,
         workers: &Workers<'_>,
     ) -> Result<(), BakeError> {
         let mut chosen = Vec::new();
-        for (number, stratum) in self.strata.iter_mut().enumerate() {
-            let last = (stratum.gathered + more[number]).min(stratum.vertices.len());
-            chosen.extend(stratum.vertices[stratum.gathered..last].iter().map(|&vertex| (vertex, number)));
-            stratum.gathered = last;
+        for (number, stratum) in self.strata.iter().enumerate() {
+            let next = stratum.vertices.iter().skip(stratum.gathered).take(more[number]);
+            chosen.extend(next.enumerate().map(|(turn, &vertex)| (turn, number, vertex)));
         }
-        let gathers = map(workers, chosen.len(), |n| {
-            let (vertex, _) = chosen[n];
+        chosen.sort_unstable();
+        let gathers = map_until(workers, late, chosen.len(), |n| {
+            let (.., vertex) = chosen[n];
             stage.gather::<V>(eyes[vertex], vertex, seed, enough)
         })?;
-        for ((vertex, stratum), gather) in chosen.into_iter().zip(gathers) {
+        for ((_, stratum, vertex), gather) in chosen.into_iter().zip(gathers) {
+            self.strata[stratum].gathered += 1;
             self.paths += u64::from(gather.paths);
             let (axes, variance, paths) = (gather.axes, gather.variance, gather.paths);
             self.probes.push(Probe { vertex, stratum, axes, variance, paths });
@@ -169,10 +175,9 @@ impl Probes {
         Ok(())
     }
 
-    /// The stratum with the largest mean squared bias, which no longer counts from now on; `None` if none counts or shows any.
-    /// Arguments as of [`Probes::bias`].
-    pub(crate) fn take_worst(
-        &mut self,
+    /// The stratum with the largest mean squared bias; `None` if none counts or shows any. Arguments as of [`Probes::bias`].
+    pub(crate) fn worst(
+        &self,
         baked: impl Fn(usize) -> Axes,
         variance: impl Fn(usize) -> f64,
     ) -> Option<Worst> {
@@ -189,9 +194,22 @@ impl Probes {
         let probes = || self.probes.iter().filter(|probe| probe.stratum == worst);
         let variances: f64 = probes().map(|probe| probe.variance * f64::from(probe.paths)).sum();
         let variance_a_path = variances / probes().count() as f64;
-        let stratum = &mut self.strata[worst];
-        stratum.counts = false;
-        Some(Worst { vertices: stratum.vertices.clone(), squared, variance_a_path })
+        let vertices = self.strata[worst].vertices.iter().rev().copied().collect();
+        Some(Worst { stratum: worst, vertices, squared, variance_a_path })
+    }
+
+    /// Takes the first `done` vertices of a stratum out of what counts: they hold gathered light now.
+    pub(crate) fn take(&mut self, worst: &Worst, done: usize) {
+        let stratum = &mut self.strata[worst.stratum];
+        let left = stratum.vertices.len() - done;
+        if left == 0 {
+            stratum.counts = false;
+            return;
+        }
+        stratum.vertices.truncate(left);
+        stratum.gathered = stratum.gathered.min(left);
+        let gone = &worst.vertices[..done];
+        self.probes.retain(|probe| probe.stratum != worst.stratum || !gone.contains(&probe.vertex));
     }
 
     /// Squared biases at the probes of a stratum.
@@ -218,6 +236,11 @@ impl Probes {
     /// Paths traced.
     pub(crate) fn paths(&self) -> u64 {
         self.paths
+    }
+
+    /// Whether the bias can be told: of each stratum at least two vertices are known, or all.
+    pub(crate) fn tell(&self) -> bool {
+        self.strata.iter().all(|s| !s.counts || s.gathered >= s.vertices.len().min(2))
     }
 
     /// Whether there are vertices left to gather at.

@@ -20,7 +20,7 @@ use crate::estimate::Estimate;
 use crate::estimate::held::{Axes, Held, Linear, energy};
 use crate::estimate::vertex_gather::{Enough, VertexGather};
 use crate::tally::{PHOTONS_A_PIECE, Photons, Tally};
-use crate::workers::{Workers, map};
+use crate::workers::{Workers, map, map_until};
 use crate::{BakeError, BakeStage};
 
 /// Batches of a round.
@@ -71,8 +71,9 @@ const GATHERED_IN_ALL: (f64, f64) = (0.5, 0.25);
 /// seemed small.
 const PROBES_AFTER: usize = 48;
 
-/// Vertices gathered between two questions whether the time is up.
-const BLOCK: usize = 256;
+/// Of the time left when the first photon starts, if there is a limit: the share after which bias is looked at, however large noise
+/// still is, and the share that this look may take. The rest goes to photons, and to what is found to be too biased.
+const TIME_OF_PROBES: (f64, f64) = (0.4, 0.3);
 
 /// Traces photons until the relative error is `asked` or the options' photons are spent.
 pub(crate) fn run<E>(job: &Job<'_>, estimate: &E, asked: f64) -> Result<Simulated, BakeError>
@@ -91,6 +92,7 @@ where
         gathered: BTreeMap::new(),
         biased: 0,
         looks: 0,
+        begun: job.workers.monitor.time_spent().unwrap_or(0.0),
     };
     let (ended_by, look) = rounds.until_good()?;
     rounds.finish(ended_by, look)
@@ -109,6 +111,8 @@ struct Rounds<'a, E> {
     /// How many of them would be too biased otherwise.
     biased: usize,
     looks: u32,
+    /// Share of the time that had passed before the first photon.
+    begun: f64,
 }
 
 /// Squares of errors and of the light itself, sums over vertices and axes \[(W/m²)²\].
@@ -121,6 +125,17 @@ struct Look {
     gathered: f64,
     bias: f64,
     bias_bound: f64,
+    /// Whether bias has been looked at, at vertices enough.
+    bias_known: bool,
+}
+
+/// Why a round ends before its last batch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pause {
+    /// The monitor has enough.
+    Enough,
+    /// It is time to look at bias.
+    Probes,
 }
 
 impl Look {
@@ -148,14 +163,15 @@ where
         let smallest = PHOTONS_A_PIECE.max(vertices.next_multiple_of(PHOTONS_A_PIECE));
         let mut next = BATCHES * smallest;
         loop {
-            let stopped = self.trace(next)?;
+            let pause = self.trace(next)?;
+            let stopped = pause == Some(Pause::Enough);
             let spent = most - self.tally.photons() < BATCHES;
             let last = stopped || spent;
             let mut look = self.look()?;
             if self.probes.is_none()
-                && (last || look.relative(look.noise) <= NOISE_BEFORE_PROBES * self.asked)
+                && (pause.is_some() || last || look.relative(look.noise) <= NOISE_BEFORE_PROBES * self.asked)
             {
-                self.probe(PROBES.0, &look)?;
+                self.probe(PROBES.0, &look, self.share_of_time(TIME_OF_PROBES.0 + TIME_OF_PROBES.1))?;
                 look = self.look_again()?;
             }
             let allowed = self.asked.powi(2) * look.signal;
@@ -163,19 +179,20 @@ where
             let bearable = |look: &Look| MOST_BIAS * (allowed - look.gathered).max(0.0);
             let monitor = self.job.workers.monitor;
             let in_time = || !last && !monitor.enough();
-            while self.probes.is_some() && look.bias_bound > bearable(&look) && in_time() {
-                let uncertain = look.bias < UNCERTAIN * bearable(&look);
+            let too_much = |look: &Look| look.bias_bound > bearable(look) || !look.bias_known;
+            while self.probes.is_some() && too_much(&look) && in_time() {
+                let uncertain = look.bias < UNCERTAIN * bearable(&look) || !look.bias_known;
                 if uncertain && self.probes.as_ref().is_some_and(|p| p.can_grow() && p.len() < PROBES.1) {
                     let more = self.probes.as_ref().map_or(0, Probes::len);
-                    self.probe(more, &look)?;
+                    self.probe(more.max(PROBES_AFTER), &look, 1.0)?;
                 } else if !self.gather_worst(&look)? {
                     break;
                 } else {
-                    self.probe(PROBES_AFTER, &look)?;
+                    self.probe(PROBES_AFTER, &look, 1.0)?;
                 }
                 look = self.look_again()?;
             }
-            let good = self.probes.is_some() && look.noise_bound + look.bias_bound <= allowed;
+            let good = look.bias_known && look.noise_bound + look.bias_bound <= allowed;
             let ended = match (good, stopped, spent) {
                 (true, ..) => Some(EndedBy::Accuracy),
                 (_, true, _) => Some(EndedBy::Monitor),
@@ -200,8 +217,13 @@ where
         (self.tally.photons() as f64 * factor) as u64
     }
 
-    /// Traces a round up to about `next` photons and says whether the monitor had enough.
-    fn trace(&mut self, next: u64) -> Result<bool, BakeError> {
+    /// The share of all time that has passed after a share of that which was left for photons.
+    fn share_of_time(&self, share: f64) -> f64 {
+        self.begun + share * (1.0 - self.begun).max(0.0)
+    }
+
+    /// Traces a round up to about `next` photons, and says why it ended before.
+    fn trace(&mut self, next: u64) -> Result<Option<Pause>, BakeError> {
         self.job.workers.monitor.stage(BakeStage::Photons);
         let first = self.tally.photons();
         let next = next.min(self.job.photons);
@@ -217,16 +239,25 @@ where
                 self.read()?;
                 if half == 0 {
                     self.noise.note_first(&self.axes, &workers)?;
+                    // Half a pair tells no noise; its light is there.
+                    if self.noise.pairs() > 1 && workers.monitor.enough() {
+                        return Ok(Some(Pause::Enough));
+                    }
                 } else {
                     self.noise.note_second(&self.axes, batch, &workers)?;
                 }
             }
             // Noise can be told from two samples.
             if self.noise.pairs() > 1 && workers.monitor.enough() {
-                return Ok(true);
+                return Ok(Some(Pause::Enough));
+            }
+            let late = self.share_of_time(TIME_OF_PROBES.0);
+            let is_late = || workers.monitor.time_spent().is_some_and(|spent| spent >= late);
+            if self.noise.pairs() > 1 && self.probes.is_none() && is_late() {
+                return Ok(Some(Pause::Probes));
             }
         }
-        Ok(false)
+        Ok(None)
     }
 
     /// Reads what vertices hold of the photons traced so far.
@@ -271,6 +302,7 @@ where
         let noise_bound = self.noise.bound(0.5 * beyond(self.looks)) * factor + of_gathered;
         let signal = (energies.sum::<f64>() - self.noise.variance() * unit * photons).max(0.0);
         let bias = self.bias();
+        let bias_known = self.probes.as_ref().is_some_and(Probes::tell);
         Ok(Look {
             signal,
             noise,
@@ -278,6 +310,7 @@ where
             gathered: of_gathered,
             bias: bias.map_or(0.0, |bias| bias.squared.max(0.0)),
             bias_bound: bias.map_or(0.0, |bias| bias.bound(0.5 * beyond(self.looks))),
+            bias_known,
         })
     }
 
@@ -287,8 +320,8 @@ where
         Enough::Variance { variance: squared / counted, most: PROBE_PATHS }
     }
 
-    /// Gathers light at `more` vertices to tell the bias.
-    fn probe(&mut self, more: usize, look: &Look) -> Result<(), BakeError> {
+    /// Gathers light at `more` vertices to tell the bias, until the share `late` of the time has passed.
+    fn probe(&mut self, more: usize, look: &Look, late: f64) -> Result<(), BakeError> {
         let job = self.job;
         job.workers.monitor.stage(BakeStage::Gathering);
         let enough = self.tolerance(self.asked.powi(2) * look.signal);
@@ -300,7 +333,7 @@ where
         let more =
             probes.divided(more, self.axes_of(), |vertex| self.noise.of_vertex(vertex) * unit * photons);
         let (stage, eyes) = (&job.ready.stage, &job.surroundings.eyes);
-        probes.gather::<E::Value>(&more, stage, eyes, job.seed(), enough, &job.workers)?;
+        probes.gather::<E::Value>(&more, stage, eyes, job.seed(), enough, late, &job.workers)?;
         self.probes = Some(probes);
         Ok(())
     }
@@ -321,11 +354,9 @@ where
     fn gather_worst(&mut self, look: &Look) -> Result<bool, BakeError> {
         let photons = self.tally.photons() as f64;
         let unit = self.unit();
-        let mut probes = self.probes.take();
-        let worst = probes.as_mut().and_then(|probes| {
-            probes.take_worst(self.axes_of(), |vertex| self.noise.of_vertex(vertex) * unit * photons)
+        let worst = self.probes.as_ref().and_then(|probes| {
+            probes.worst(self.axes_of(), |vertex| self.noise.of_vertex(vertex) * unit * photons)
         });
-        self.probes = probes;
         let Some(worst) = worst else { return Ok(false) };
         let allowed = self.asked.powi(2) * look.signal;
         let mean = allowed / self.job.counted().count().max(1) as f64;
@@ -335,10 +366,12 @@ where
             .min(GATHERED_IN_ALL.1 * left / worst.vertices.len() as f64);
         // In darkness nothing is divided by nothing.
         let paths = (worst.variance_a_path / variance).min(f64::from(MOST_PATHS)).max(0.0) as u32;
-        let wanted: Vec<_> =
-            worst.vertices.into_iter().map(|vertex| (vertex, Enough::Roughly(paths))).collect();
+        let wanted: Vec<_> = worst.vertices.iter().map(|&vertex| (vertex, Enough::Roughly(paths))).collect();
         let done = self.gather(&wanted)?;
         self.biased += done;
+        if let Some(probes) = &mut self.probes {
+            probes.take(&worst, done);
+        }
         Ok(done == wanted.len())
     }
 
@@ -346,18 +379,12 @@ where
     fn gather(&mut self, vertices: &[(usize, Enough)]) -> Result<usize, BakeError> {
         let job = self.job;
         job.workers.monitor.stage(BakeStage::Gathering);
-        let mut done = 0;
-        for block in vertices.chunks(BLOCK) {
-            if done > 0 && job.workers.monitor.enough() {
-                break;
-            }
-            let gathers = map(&job.workers, block.len(), |n| {
-                let (vertex, enough) = block[n];
-                job.ready.stage.gather::<E::Value>(job.surroundings.eyes[vertex], vertex, job.seed(), enough)
-            })?;
-            done += block.len();
-            self.gathered.extend(block.iter().map(|(vertex, _)| *vertex).zip(gathers));
-        }
+        let gathers = map_until(&job.workers, 1.0, vertices.len(), |n| {
+            let (vertex, enough) = vertices[n];
+            job.ready.stage.gather::<E::Value>(job.surroundings.eyes[vertex], vertex, job.seed(), enough)
+        })?;
+        let done = gathers.len();
+        self.gathered.extend(vertices.iter().map(|(vertex, _)| *vertex).zip(gathers));
         Ok(done)
     }
 
@@ -393,7 +420,7 @@ where
             asked: self.asked,
             reached: look.reached(),
             noise: look.relative(look.noise),
-            bias: look.relative(look.bias),
+            bias: look.bias_known.then(|| look.relative(look.bias)),
             ended_by,
             batches: 2 * self.noise.pairs(),
             looks: self.looks,
@@ -419,6 +446,7 @@ where
             photons: traced.photons,
             paths: report.paths,
             accuracy: Some(report),
+            rough: 0,
         })
     }
 

@@ -202,18 +202,91 @@ fn caps_end_a_bake_early_and_the_report_says_so() {
     impl Monitor for Hasty {
         fn progress(&self, _: u64, _: u64) {}
         fn enough(&self) -> bool {
-            self.0.fetch_sub(1, Ordering::Relaxed) == 0
+            self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
         }
     }
     let asked = BakeOptions { accuracy: Some(0.01), ..options() };
     let hasty = Hasty(AtomicU32::new(3));
     let result = bake(&scene.0, &scene.1, &plan(&scene.0, 64), &asked, &hasty).unwrap();
     let report = result.accuracy.unwrap();
-    assert!(report.ended_by == EndedBy::Monitor && report.batches == 10, "{report:?}");
+    assert!(report.ended_by == EndedBy::Monitor && report.batches == 6, "{report:?}");
     let plain = BakeOptions { photons: 10_000_000, ..options() };
     let hasty = Hasty(AtomicU32::new(0));
     let result = bake(&scene.0, &scene.1, &plan(&scene.0, 64), &plain, &hasty).unwrap();
     assert_eq!(result.stats.photons, 65_536);
+}
+
+/// Its time passes by being asked for.
+struct Clock {
+    asked: AtomicU32,
+    until: u32,
+}
+
+impl Clock {
+    fn until(until: u32) -> Self {
+        Self { asked: AtomicU32::new(0), until }
+    }
+}
+
+impl Monitor for Clock {
+    fn progress(&self, _: u64, _: u64) {}
+    fn time_spent(&self) -> Option<f64> {
+        Some(f64::from(self.asked.fetch_add(1, Ordering::Relaxed)) / f64::from(self.until))
+    }
+}
+
+/// Wherever a bake is stopped, it is stopped at once, and its report does not promise more than is there: not when bias has been
+/// looked at in few places, and not when half of what is to be gathered has been.
+#[test]
+fn a_bake_whose_time_is_up_stops_where_it_is_and_says_what_is_known() {
+    let scene = room();
+    let options = BakeOptions { dims: [6, 4, 3], bounds: inside(&scene), accuracy: Some(0.015), ..options() };
+    let options = BakeOptions { threads: Some(1), ..options };
+    let truth = Truth::gathered(&scene, &BakeOptions { accuracy: None, ..options.clone() });
+    let (mut unknown, mut known, mut partly) = (0, 0, 0);
+    for until in [4, 8, 12, 16, 24, 40, 60, 90, 110, 130, 150, 170] {
+        let clock = Clock::until(until);
+        let result = bake(&scene.0, &scene.1, &plan(&scene.0, 200), &options, &clock).unwrap();
+        let report = result.accuracy.unwrap();
+        assert_eq!(report.ended_by, EndedBy::Monitor, "{report:?}");
+        // Every vertex and every batch asks; a few questions more say that the time is still up.
+        assert!(clock.asked.into_inner() < until + 12, "{until}: {report:?}");
+        assert!(!report.holds(), "{report:?}");
+        let error = truth.error(&result.grid);
+        if report.bias.is_none() {
+            unknown += 1;
+            continue;
+        }
+        known += 1;
+        partly += u32::from(report.gathered_biased > 0);
+        assert!(error < report.reached, "{until}: {error} {report:?}");
+    }
+    assert!(unknown > 0 && known > 2 && partly > 0, "{unknown} {known} {partly}");
+}
+
+/// A grid that is path traced has a few paths everywhere before any vertex has all.
+#[test]
+fn paths_for_which_there_is_no_time_are_missing_here_and_there() {
+    let scene = room();
+    let options =
+        BakeOptions { estimator: Estimator::Gather, bounds: inside(&scene), paths: 1024, ..options() };
+    let all = baked(&scene, &options);
+    assert_eq!(all.stats.rough_vertices, 0);
+    // Each vertex asks twice: how much time has passed, and whether that is all.
+    let half = Clock::until(all.stats.valid_vertices as u32);
+    let some = bake(&scene.0, &scene.1, &plan(&scene.0, 200), &options, &half).unwrap();
+    let (rough, valid) = (some.stats.rough_vertices, some.stats.valid_vertices);
+    assert!(rough > valid / 4 && rough < 3 * valid / 4, "{rough} of {valid}");
+    let (finished, rest): (Vec<usize>, Vec<usize>) = (0..some.grid.vertex_count())
+        .filter(|&vertex| some.grid.is_valid(vertex))
+        .partition(|&vertex| some.grid.vectors()[vertex] == all.grid.vectors()[vertex]);
+    assert_eq!((finished.len(), rest.len()), (valid - rough, rough));
+    assert!(rest.iter().all(|&vertex| some.grid.vectors()[vertex].axes().iter().any(|&x| x > 0.0)));
+    let low = finished.iter().filter(|&&vertex| vertex < some.grid.vertex_count() / 2).count();
+    assert!(low > finished.len() / 4 && low < 3 * finished.len() / 4, "{low} of {}", finished.len());
+    let patient = Clock::until(u32::MAX);
+    let same = bake(&scene.0, &scene.1, &plan(&scene.0, 200), &options, &patient).unwrap();
+    assert_eq!(same.grid, all.grid, "a time that is not up changes nothing");
 }
 
 #[test]

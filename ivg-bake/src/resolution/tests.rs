@@ -6,7 +6,7 @@ use crate::cases::{SceneBuilder, plan};
 use crate::{BakeOptions, Silent, bake};
 
 const FREE: ResolutionLimits<'static> =
-    ResolutionLimits { vertices: 1 << 18, photons: None, fits: &|_| true };
+    ResolutionLimits { vertices: 1 << 18, prepared: None, photons: None, fits: &|_| true };
 
 fn decided((scene, flat): &(Scene, FlatScene), limits: &ResolutionLimits<'_>) -> Resolution {
     resolution(scene, flat, &plan(scene, 32), &BakeOptions::default(), limits).unwrap()
@@ -81,6 +81,11 @@ fn limits_make_it_coarser_and_are_named() {
     let small = decided(&scene, &ResolutionLimits { fits: &fits, ..FREE });
     assert!(fits(small.dims) && small.limited == Some(Limited::Size), "{small:?}");
     assert!(small.reason().contains("the file is to be no larger"), "{}", small.reason());
+    let quick = decided(&scene, &ResolutionLimits { prepared: Some(700), ..FREE });
+    assert!(
+        (400..=700).contains(&vertices(&quick)) && quick.limited == Some(Limited::Preparation),
+        "{quick:?}"
+    );
     let endless = decided(&even(Vec3::new(1000.0, 1.0, 1.0)), &FREE);
     assert!(endless.dims[0] == 128 && endless.limited == Some(Limited::Axis), "{endless:?}");
 }

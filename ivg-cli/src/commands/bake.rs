@@ -55,6 +55,7 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
             "blocked_edges": stats.blocked_edges,
             "photons": stats.photons,
             "paths": stats.paths,
+            "rough_vertices": stats.rough_vertices,
             "flights": stats.flights,
             "bounces": baked.plan.max_bounces,
             "emitted_watts": stats.emitted.to_array(),
@@ -87,6 +88,12 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
     }
     if stats.paths > 0 {
         files::print(&format!("{} paths traced to gather light\n", stats.paths))?;
+    }
+    if stats.rough_vertices > 0 {
+        files::print(&format!(
+            "{} vertices have fewer paths than the others: the time was up\n",
+            stats.rough_vertices
+        ))?;
     }
     files::print(&report::stages_text(&baked.stages))?;
     if let Some(report) = &baked.accuracy {

@@ -41,15 +41,18 @@ pub(super) fn accuracy_json(report: &AccuracyReport) -> Value {
 
 pub(super) fn accuracy_text(report: &AccuracyReport) -> String {
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
-    let mut text = format!(
-        "error at most {} of {} asked for, with {:.0} % confidence: noise {}, bias {}; ended by {}\n",
-        percent(report.reached),
-        percent(report.asked),
-        100.0 * CONFIDENCE,
-        percent(report.noise),
-        percent(report.bias),
-        report.ended_by.name(),
-    );
+    let [reached, asked, noise] = [report.reached, report.asked, report.noise].map(percent);
+    let confidence = 100.0 * CONFIDENCE;
+    let ended = report.ended_by.name();
+    let mut text = match report.bias.map(percent) {
+        Some(bias) => format!(
+            "error at most {reached}, {asked} asked for, with {confidence:.0} % confidence: noise {noise}, bias {bias}; ended by {ended}\n"
+        ),
+        None => format!(
+            "noise at most {reached}, {asked} asked for, with {confidence:.0} % confidence: noise {noise}, bias not known, since there \
+             was no time to measure it; ended by {ended}\n"
+        ),
+    };
     text += &format!(
         "(root mean square over {} vertices, irradiance along the axes; noise from {} batches, bias from {} vertices)\n",
         report.vertices, report.batches, report.probes,
@@ -72,5 +75,10 @@ pub(super) fn advice(report: &AccuracyReport) -> String {
         EndedBy::Monitor => "the --time was up",
         _ => "the photons or paths allowed are spent",
     };
+    if report.bias.is_none() {
+        return format!(
+            "noise alone is up to {reached:.2} %, {asked:.2} % was asked for, and bias is not known: {what}"
+        );
+    }
     format!("the error is up to {reached:.2} %, {asked:.2} % was asked for: {what}")
 }
