@@ -1,16 +1,20 @@
 //! What must hold for any bytes: the bodies of the fuzz targets, which tests on the stable toolchain call too. Each function
 //! takes bytes, returns nothing, and panics when something does not hold.
 
+pub mod fields;
 pub mod ivg;
 mod ivg_roundtrip;
+mod planted;
 pub mod pmesh;
 mod pmesh_lod;
 mod pmesh_packets;
 mod pmesh_roundtrip;
 pub mod stream;
 
+pub use fields::{edited, ivg_fields, pmesh_fields};
 pub use ivg::{ivg_chunks, ivg_decode};
 pub use ivg_roundtrip::ivg_roundtrip;
+pub use planted::PLANTED;
 pub use pmesh::{pmesh_chunks, pmesh_decode};
 pub use pmesh_lod::pmesh_lod;
 pub use pmesh_packets::pmesh_packets;
@@ -22,13 +26,15 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 pub type Oracle = fn(&[u8]);
 
 /// Every oracle here under the name of its fuzz target, which begins with the name of its format.
-pub const ORACLES: [(&str, Oracle); 8] = [
+pub const ORACLES: [(&str, Oracle); 10] = [
     ("ivg_decode", ivg_decode),
     ("ivg_chunks", ivg_chunks),
+    ("ivg_fields", ivg_fields),
     ("ivg_roundtrip", ivg_roundtrip),
     ("pmesh_decode", pmesh_decode),
     ("pmesh_chunks", pmesh_chunks),
     ("pmesh_lod", pmesh_lod),
+    ("pmesh_fields", pmesh_fields),
     ("pmesh_packets", pmesh_packets),
     ("pmesh_roundtrip", pmesh_roundtrip),
 ];

@@ -87,6 +87,10 @@ fn all(selection: &Selection) -> Vec<Step> {
         ));
         steps.push(Step { name: "readers in other languages", actions: readers::actions() });
         steps.push(step("fuzz targets build", [call("cargo fuzz build", fuzz::build)]));
+        steps.push(step(
+            "fuzz-planted: bugs that the fuzzer must find",
+            [call("the target `planted`, once for each of its bugs", fuzz::planted)],
+        ));
         let seconds = selection.fuzz_seconds;
         steps.push(step(
             "fuzz targets run",

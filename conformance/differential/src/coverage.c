@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /*
- * Tells libFuzzer which code of ./readers.c an input reaches. GCC calls a function at each edge, which libFuzzer does not have: here it
- * counts in an array that libFuzzer looks at beside its own (its "extra counters"). This file is compiled without coverage.
+ * Tells libFuzzer which code of ./readers.c an input reaches. GCC knows no other way than to call a function at each edge: here it counts
+ * in an array that libFuzzer looks at beside its own (its "extra counters"). This file is compiled without coverage.
  */
 
 #include <stdint.h>
@@ -10,7 +10,7 @@
 
 __attribute__((section("__libfuzzer_extra_counters"))) static uint8_t counters[COUNTERS];
 
-void __sanitizer_cov_trace_pc(void)
+void differential_trace_pc(void)
 {
     const uintptr_t place = (uintptr_t)__builtin_return_address(0);
     counters[(place ^ place >> 13) % COUNTERS]++;

@@ -10,7 +10,7 @@ use crate::transcript::{End, Transcript};
 pub enum Mistake {
     /// None: the reader as it is.
     None,
-    /// Behind a record of a generation above 2, four bytes more than the record has are looked at.
+    /// After a record of a generation above 2, the byte behind the end record is looked at, as if this were the last one.
     ReadsBehindTheEnd,
     /// The scale exponent is left out where bundles are dequantised.
     ForgetsTheScale,

@@ -19,6 +19,11 @@ const VISITS: usize = 12;
 ///
 /// When that does not hold.
 pub fn pmesh_lod(data: &[u8]) {
+    pmesh_lod_as(data, Replay::mesh);
+}
+
+/// As [`pmesh_lod`], with the meshes that `shown` makes of the levels that are visited.
+pub(super) fn pmesh_lod_as(data: &[u8], shown: impl Fn(&Replay) -> IndexedMesh) {
     let Some(mut whole) = replay_all(data) else { return };
     let choices = &data[data.len() - data.len().min(PIECE_CHOICES)..];
     let levels = choices.iter().cycle().take(VISITS).map(|&choice| u32::from(choice));
@@ -31,7 +36,7 @@ pub fn pmesh_lod(data: &[u8]) {
     let mut visit = |replay: &mut Replay, change: &LevelChange| {
         update(&mut copy, replay, change);
         let level = replay.level();
-        let mesh = replay.mesh();
+        let mesh = shown(replay);
         check_level(&mesh).unwrap_or_else(|fault| panic!("level {level}: {fault}"));
         assert_eq!(mesh.positions.len() as u32, level);
         assert_eq!(mesh, at_level(&mut whole, level), "level {level} depends on the way there");
@@ -58,7 +63,7 @@ pub fn pmesh_lod(data: &[u8]) {
 
 /// The second reader with the first packets of the file, which have been accepted; `None` if they are too many for it.
 fn referenced<'a>(data: &[u8], header: &'a Header, packets: u32) -> Option<Reference<'a>> {
-    let mut reference = reference(header)?;
+    let mut reference = reference(header, data)?;
     for k in 0..packets {
         let range = header.packet_range(k);
         let packet = decode_packet(header, k, &data[range.start as usize..range.end as usize]);

@@ -7,15 +7,17 @@ use std::path::PathBuf;
 
 /// Largest vector that becomes a seed \[bytes\]: fuzzers are slow on long inputs.
 const LONGEST: usize = 2048;
-/// Lengths of the inputs that stand for choices \[bytes\].
+/// Targets whose inputs stand for choices, and lengths of these inputs \[bytes\].
+const CHOICE_TARGETS: [&str; 6] =
+    ["ivg_roundtrip", "pmesh_roundtrip", "mesh_build", "pmesh_packets", "ivg_fields", "pmesh_fields"];
 const CHOICE_LENGTHS: [usize; 4] = [8, 64, 300, 1200];
 
 /// Paths relative to the corpus, and contents.
 pub(super) fn seeds(vectors: &[Vector]) -> Vec<(PathBuf, Vec<u8>)> {
     let mut seeds = Vec::new();
     for (format, targets) in [
-        (Format::Ivg, &["ivg_decode", "ivg_chunks"][..]),
-        (Format::Pmesh, &["pmesh_decode", "pmesh_chunks", "pmesh_lod"]),
+        (Format::Ivg, &["ivg_decode", "ivg_chunks", "ivg_vs_c"][..]),
+        (Format::Pmesh, &["pmesh_decode", "pmesh_chunks", "pmesh_lod", "pmesh_vs_c"]),
     ] {
         let short = vectors.iter().filter(|vector| {
             vector.format == format && vector.code.is_none() && vector.bytes.len() <= LONGEST
@@ -24,7 +26,7 @@ pub(super) fn seeds(vectors: &[Vector]) -> Vec<(PathBuf, Vec<u8>)> {
             seeds.push((PathBuf::from(target).join(&vector.name), vector.bytes.clone()));
         }
     }
-    for (seed, target) in (0..).zip(["ivg_roundtrip", "pmesh_roundtrip", "mesh_build", "pmesh_packets"]) {
+    for (seed, target) in (0..).zip(CHOICE_TARGETS) {
         for length in CHOICE_LENGTHS {
             seeds.push((PathBuf::from(target).join(format!("choices-{length}")), choices(seed, length)));
         }

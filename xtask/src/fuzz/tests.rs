@@ -1,4 +1,4 @@
-use super::{release, run_arguments};
+use super::{BUGS, planted_arguments, release, run_arguments};
 
 #[test]
 fn reads_the_release_of_a_compiler() {
@@ -40,4 +40,21 @@ fn seeds_that_nobody_generates_lie_apart() {
         arguments.starts_with("run acc_decode target/fuzz-corpus/acc_decode fuzz/seeds/acc_decode -- "),
         "{arguments}"
     );
+}
+
+#[test]
+fn planted_bugs_are_those_of_the_target_and_are_looked_for_from_seeds_that_exist() {
+    let root = crate::workspace_root();
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    let named = read("conformance/src/oracles/planted.rs") + &read("fuzz/fuzz_targets/planted.rs");
+    let names = named.lines().filter_map(|line| line.trim().strip_prefix("(\"")?.split_once("\", ")).count();
+    assert_eq!(names, BUGS.len());
+    for (bug, seeds, _) in BUGS {
+        assert!(named.contains(&format!("(\"{bug}\", ")), "{bug}");
+        assert!(root.join("fuzz/corpus").join(seeds).is_dir(), "{seeds}");
+        assert!(
+            planted_arguments(bug, seeds)
+                .starts_with(&format!("run planted target/fuzz-planted/{bug} fuzz/corpus/{seeds} -- "))
+        );
+    }
 }

@@ -39,6 +39,7 @@ fn the_full_suite_has_every_part() {
         "conformance/mutants/check.py",
         "cargo fuzz build",
         "cargo fuzz list",
+        "the target `planted`",
     ] {
         assert!(listing.contains(part), "{part} is not in\n{listing}");
     }
