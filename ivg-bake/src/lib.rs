@@ -27,6 +27,28 @@
 //! * A scene far from its origin, in millimetres or in kilometres, gives the same grid.
 //! * Unusable input is an error that names it.
 //!
+//! # Limits
+//!
+//! * Light that changes within a step of the grid is averaged: the shade between a lamp and the ceiling close above it is missing,
+//!   and so is most light on the side of a thin wall where a lamp set into it has the lesser part. How bright pictures are depends on
+//!   the resolution; the example `brightness` measures it. Mean of baked over path-traced irradiance of what pictures show, and how
+//!   far the worst of 27 parts of the scene is off:
+//!
+//!   | scene | vertices | mean | worst part |
+//!   |---|---|---|---|
+//!   | kitchen, 5.6 m | 16 × 16 × 16 | 1.038 | 13 % |
+//!   | | 24 × 20 × 24 | 1.029 | 9 % |
+//!   | | 32 × 32 × 32 | 1.017 | 8 % |
+//!   | hotel room, 10 m, a lamp through a wall | 34 × 7 × 42 | 0.986 | 15 % |
+//!   | | 48 × 16 × 72 | 0.992 | 11 % |
+//!   | | 64 × 32 × 96 | 0.997 | 4 % |
+//!
+//!   Steps of a tenth of a metre to a fifth keep the mean within 2 % and all parts within 10 %. The automatic resolution
+//!   ([`resolution()`]) can be coarser: it measures how light changes on a grid of 16 vertices along the longest axis, which shows
+//!   nothing of what is finer.
+//! * The outside of a closed room's wall is shown with light of the room: the vertices there are invalid, since no light reaches
+//!   them, and where no other is near, lookups take what has been filled in from within. No picture from inside the room shows it.
+//!
 //! # Example
 //!
 //! ```
