@@ -79,7 +79,7 @@ struct TestOptions {
     #[arg(long)]
     list: bool,
     /// How long each fuzz target runs, in seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 5)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 20)]
     fuzz_seconds: u32,
 }
 
