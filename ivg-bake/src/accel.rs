@@ -7,8 +7,8 @@
 //! component of −0.
 //!
 //! Photons' flights find their hits in this tree 1.2 to 1.3 times as fast as in a binary one of the same crate (the kitchen, the
-//! dragon in a box), for half more time to build at most; the slowest builds take ten times as long and gain a twentieth at
-//! most (`cargo xtask peers bake --only rays` prints them all). So others exist for that comparison alone.
+//! dragon in a box), for 1.2 to 1.6 times as long to build; the slowest builds take five to ten times as long and gain a
+//! twentieth at most (`cargo xtask peers bake --only rays` prints them all). So others exist for that comparison alone.
 //!
 //! Of hits at equal distance the one with the lowest triangle index counts, so that no result depends on the order of
 //! nodes. The tree is built on one thread (the crate's feature `parallel` is off) and is the same every time.

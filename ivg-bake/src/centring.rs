@@ -101,8 +101,9 @@ impl Centring {
             let mut place = match regions.get(vertex) {
                 Region::Whole => return Place { cells: SUB_CELLS as u16, ..Place::default() },
                 Region::Nothing => return Place::default(),
-                Region::Part(mask) => {
-                    Place { cells: mask.count() as u16, moments: mask.moments(), ..Place::default() }
+                Region::Part(part) => {
+                    let (cells, moments) = (part.mask.count() as u16, part.mask.moments());
+                    Place { cells, moments, ..Place::default() }
                 }
             };
             let eye = eyes[vertex];

@@ -18,6 +18,49 @@ pub(crate) struct Boxes {
     pub(crate) count: [usize; 3],
 }
 
+/// The points origin + t direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    origin: [f32; 3],
+    direction: [f32; 3],
+    /// 1 / direction.
+    inverse: [f32; 3],
+}
+
+impl Line {
+    /// The line from `origin` along `direction`.
+    #[inline]
+    pub(crate) fn new(origin: Vec3, direction: Vec3) -> Self {
+        let direction = direction.to_array();
+        Self { origin: origin.to_array(), direction, inverse: direction.map(|x| 1.0 / x) }
+    }
+
+    /// The part of t from `from` to `to` that lies in the box from `low` to `high`; `None` if there is none.
+    #[inline]
+    pub(crate) fn clip(
+        &self,
+        low: [f32; 3],
+        high: [f32; 3],
+        mut from: f32,
+        mut to: f32,
+    ) -> Option<(f32, f32)> {
+        for a in 0..3 {
+            if self.direction[a] == 0.0 {
+                if self.origin[a] < low[a] || self.origin[a] >= high[a] {
+                    return None;
+                }
+            } else {
+                let t0 = (low[a] - self.origin[a]) * self.inverse[a];
+                let t1 = (high[a] - self.origin[a]) * self.inverse[a];
+                from = from.max(t0.min(t1));
+                to = to.min(t0.max(t1));
+            }
+        }
+        // A number that is none is not less.
+        (from < to).then_some((from, to))
+    }
+}
+
 impl Boxes {
     /// The dual cells of `lattice`. `thickness` is the size of the cells along an axis of one vertex \[m\].
     pub(crate) fn dual_cells(lattice: &Lattice, thickness: [f64; 3], space: Space) -> Self {
@@ -68,35 +111,13 @@ impl Boxes {
         self.step.iter().map(|&s| f64::from(s)).product()
     }
 
-    /// Calls `visit(box, from, to)` for the stretches of the ray `origin + t direction`, t from `from` to `to`, inside
+    /// Calls `visit(box, from, to)` for the stretches of a line, t from `from` to `to`, inside
     /// each box, in order (J. Amanatides, A. Woo, "A fast voxel traversal algorithm for ray tracing", 1987).
     #[inline]
-    pub(crate) fn walk(
-        &self,
-        origin: Vec3,
-        direction: Vec3,
-        mut from: f32,
-        mut to: f32,
-        mut visit: impl FnMut([usize; 3], f32, f32),
-    ) {
-        let (o, d) = (origin.to_array(), direction.to_array());
-        let inverse = d.map(|x| 1.0 / x);
-        for a in 0..3 {
-            let high = self.low[a] + self.count[a] as f32 * self.step[a];
-            if d[a] == 0.0 {
-                if o[a] < self.low[a] || o[a] >= high {
-                    return;
-                }
-            } else {
-                let (t0, t1) = ((self.low[a] - o[a]) * inverse[a], (high - o[a]) * inverse[a]);
-                from = from.max(t0.min(t1));
-                to = to.min(t0.max(t1));
-            }
-        }
-        // Written so that a number that is none ends here too.
-        if !matches!(from.partial_cmp(&to), Some(core::cmp::Ordering::Less)) {
-            return;
-        }
+    pub(crate) fn walk(&self, line: &Line, from: f32, to: f32, mut visit: impl FnMut([usize; 3], f32, f32)) {
+        let &Line { origin: o, direction: d, inverse } = line;
+        let high = core::array::from_fn(|a| self.low[a] + self.count[a] as f32 * self.step[a]);
+        let Some((from, to)) = line.clip(self.low, high, from, to) else { return };
         let mut at = [0usize; 3];
         let mut next = [f32::INFINITY; 3];
         let mut stride = [0f32; 3];

@@ -3,14 +3,11 @@
 //! Everything is in bake space: coordinates centred on the scene and scaled so that neither tree nor triangle test loses
 //! digits.
 
-use std::sync::{Mutex, PoisonError};
-
 use glam::Vec3;
 use ivg_scene::{EffectPlan, FlatScene, Scene};
 
 use crate::accel::{BinaryTree, Build, TraceScene};
-use crate::accumulate::{Store, Sums, Total};
-use crate::estimate::{Estimate, Flight};
+use crate::estimate::Flight;
 use crate::ready::Ready;
 use crate::trace::Books;
 use crate::{BakeError, BakeOptions};
@@ -123,40 +120,16 @@ pub fn flights(
 ) -> Result<Flights, BakeError> {
     let ready = Ready::new(scene, flat, plan, options)?;
     let tracer = ready.tracer(options.seed, plan.max_bounces);
-    let recorder = Recorder(Mutex::default());
-    let mut books = Books::default();
+    let (mut rays, mut books) = (Vec::new(), Books::default());
     for photon in 0..options.photons {
-        tracer.trace(photon, &recorder, &mut Store::view(&[]), &mut books);
-        if recorder.lock().len() >= most {
+        let mut keep = |flight: Flight| rays.push(Ray { origin: flight.origin, direction: flight.direction });
+        tracer.trace(photon, &mut keep, &mut books);
+        if rays.len() >= most {
             break;
         }
     }
-    let mut rays = recorder.0.into_inner().unwrap_or_else(PoisonError::into_inner);
     rays.truncate(most);
     Ok(Flights { triangles: ready.stage.surfaces.triangles().to_vec(), rays })
-}
-
-/// Keeps flights instead of depositing them.
-struct Recorder(Mutex<Vec<Ray>>);
-
-impl Recorder {
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Ray>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Estimate for Recorder {
-    type Value = ();
-
-    fn sums(&self) -> usize {
-        0
-    }
-
-    fn deposit(&self, flight: &Flight, _: &mut impl Sums) {
-        self.lock().push(Ray { origin: flight.origin, direction: flight.direction });
-    }
-
-    fn value(&self, _: &Total<'_>, _: usize, _: f64) {}
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use crate::accel::TraceScene;
-use crate::dual::Boxes;
+use crate::dual::{Boxes, Line};
 
 /// Sub-cells along each axis of a cell.
 pub(crate) const SUB: usize = 8;
@@ -108,7 +108,51 @@ impl Mask {
 pub(crate) struct Regions {
     /// [`WHOLE`], [`NOTHING`], or an index into `masks`.
     codes: Vec<u32>,
-    masks: Vec<Mask>,
+    masks: Vec<Part>,
+}
+
+/// The part of a cell that counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Part {
+    pub(crate) mask: Mask,
+    /// Lowest sub-cell that counts along each axis, and one beyond the highest.
+    low: [u8; 3],
+    high: [u8; 3],
+    /// Whether all sub-cells between these count, as where walls lie along the axes.
+    is_box: bool,
+}
+
+impl Part {
+    fn new(mask: Mask) -> Self {
+        let (mut low, mut high) = ([SUB as u8; 3], [0; 3]);
+        for at in (0..SUB * SUB * SUB).map(|n| [n % SUB, n / SUB % SUB, n / SUB / SUB]) {
+            if mask.contains(at) {
+                low = core::array::from_fn(|a| low[a].min(at[a] as u8));
+                high = core::array::from_fn(|a| high[a].max(at[a] as u8 + 1));
+            }
+        }
+        let between: u32 = (0..3).map(|a| u32::from(high[a].saturating_sub(low[a]))).product();
+        Self { mask, low, high, is_box: between == mask.count() }
+    }
+
+    /// Length of a line from `from` to `to` in the part of the cell with lowest corner `corner` and sub-cells of size `step`.
+    #[inline]
+    fn length(&self, corner: [f32; 3], step: [f32; 3], line: &Line, from: f32, to: f32) -> f32 {
+        let plane = |at: [u8; 3]| core::array::from_fn(|a| corner[a] + f32::from(at[a]) * step[a]);
+        let low = plane(self.low);
+        let Some((from, to)) = line.clip(low, plane(self.high), from, to) else { return 0.0 };
+        if self.is_box {
+            return to - from;
+        }
+        let count = core::array::from_fn(|a| usize::from(self.high[a] - self.low[a]));
+        let [x, y, z] = self.low.map(usize::from);
+        let mut length = 0.0;
+        Boxes { low, step, count }.walk(line, from, to, |at, from, to| {
+            let counts = self.mask.contains([at[0] + x, at[1] + y, at[2] + z]);
+            length += if counts { to - from } else { 0.0 };
+        });
+        length
+    }
 }
 
 const WHOLE: u32 = u32::MAX;
@@ -122,7 +166,7 @@ pub(crate) enum Region<'a> {
     /// Nothing: no light reaches the vertex.
     Nothing,
     /// Some sub-cells.
-    Part(&'a Mask),
+    Part(&'a Part),
 }
 
 impl Regions {
@@ -135,7 +179,7 @@ impl Regions {
                 Some(mask) if mask.count() == 0 => NOTHING,
                 Some(mask) if mask.count() == SUB_CELLS => WHOLE,
                 Some(mask) => {
-                    regions.masks.push(mask);
+                    regions.masks.push(Part::new(mask));
                     (regions.masks.len() - 1) as u32
                 }
             };
@@ -161,37 +205,19 @@ impl Region<'_> {
         match self {
             Self::Whole => 1.0,
             Self::Nothing => 0.0,
-            Self::Part(mask) => f64::from(mask.count()) / f64::from(SUB_CELLS),
+            Self::Part(part) => f64::from(part.mask.count()) / f64::from(SUB_CELLS),
         }
     }
 
-    /// Length of the ray from `from` to `to`, all of it inside the cell with lowest `corner`, in the part that counts.
+    /// Length of a line from `from` to `to`, all of it inside `cell`, in the part that counts.
     #[inline]
-    pub(crate) fn length(
-        &self,
-        cells: &Boxes,
-        cell: [usize; 3],
-        origin: Vec3,
-        direction: Vec3,
-        from: f32,
-        to: f32,
-    ) -> f32 {
+    pub(crate) fn length(&self, cells: &Boxes, cell: [usize; 3], line: &Line, from: f32, to: f32) -> f32 {
         match self {
             Self::Whole => to - from,
             Self::Nothing => 0.0,
-            Self::Part(mask) => {
-                let sub = Boxes {
-                    low: cells.corner(cell),
-                    step: cells.step.map(|s| s * (1.0 / SUB as f32)),
-                    count: [SUB; 3],
-                };
-                let mut length = 0.0;
-                sub.walk(origin, direction, from, to, |at, t0, t1| {
-                    if mask.contains(at) {
-                        length += t1 - t0;
-                    }
-                });
-                length
+            Self::Part(part) => {
+                let step = cells.step.map(|s| s * (1.0 / SUB as f32));
+                part.length(cells.corner(cell), step, line, from, to)
             }
         }
     }

@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use crate::BakeError;
 use crate::accumulate::{Store, Total};
 use crate::estimate::Estimate;
+use crate::estimate::queue::Queue;
 use crate::trace::{Books, Tracer};
 use crate::workers::Workers;
 
@@ -116,12 +117,16 @@ impl<'a, E: Estimate> Tally<'a, E> {
             match &*store {
                 Store::Private { len, sets } => {
                     let mut sums = Store::take(sets, *len);
-                    trace(&mut |photon, books| tracer.trace(photon, *estimate, &mut sums, books));
+                    let mut queue = Queue::new(*estimate, &mut sums);
+                    trace(&mut |photon, books| tracer.trace(photon, &mut |flight| queue.push(flight), books));
+                    queue.empty();
                     Store::give_back(sets, sums);
                 }
                 Store::Shared(cells) => {
                     let mut sums = Store::view(cells);
-                    trace(&mut |photon, books| tracer.trace(photon, *estimate, &mut sums, books));
+                    let mut queue = Queue::new(*estimate, &mut sums);
+                    trace(&mut |photon, books| tracer.trace(photon, &mut |flight| queue.push(flight), books));
+                    queue.empty();
                 }
             }
             books.lock().unwrap_or_else(PoisonError::into_inner).merge(&own);

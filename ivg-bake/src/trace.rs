@@ -3,8 +3,7 @@
 use glam::Vec3;
 
 use crate::accel::Hit;
-use crate::accumulate::Sums;
-use crate::estimate::{Estimate, Flight};
+use crate::estimate::Flight;
 use crate::lobes::{LobeTable, Scattered, Way};
 use crate::sampling::hemisphere;
 use crate::sampling::rng::{Purpose, Stream, unit};
@@ -73,33 +72,21 @@ pub(crate) struct Tracer<'a> {
 }
 
 impl Tracer<'_> {
-    /// Traces one photon and deposits its flights after the first; of the sky, whose light nobody else adds, the first too.
+    /// Traces one photon and calls `deposit` with its flights after the first; of the sky, whose light nobody else adds, with the first
+    /// too.
     ///
     /// Russian roulette goes on with the share that the brightest channel keeps, so that the brightest channel of a photon is
     /// never more than it started with. Scenes whose surfaces reflect evenly and nothing else run code that knows nothing else.
     #[inline]
-    pub(crate) fn trace<E: Estimate>(
-        &self,
-        photon: u64,
-        estimate: &E,
-        sums: &mut impl Sums,
-        books: &mut Books,
-    ) {
+    pub(crate) fn trace(&self, photon: u64, deposit: &mut impl FnMut(Flight), books: &mut Books) {
         match self.stage.surfaces.lobes() {
-            None => self.follow(photon, estimate, sums, books, Reflect),
-            Some(lobes) => self.follow(photon, estimate, sums, books, Scatter(lobes)),
+            None => self.follow(photon, deposit, books, Reflect),
+            Some(lobes) => self.follow(photon, deposit, books, Scatter(lobes)),
         }
     }
 
     #[inline]
-    fn follow<E: Estimate>(
-        &self,
-        photon: u64,
-        estimate: &E,
-        sums: &mut impl Sums,
-        books: &mut Books,
-        meet: impl Meet,
-    ) {
+    fn follow(&self, photon: u64, deposit: &mut impl FnMut(Flight), books: &mut Books, meet: impl Meet) {
         let stream = Stream::new(self.seed, photon);
         let emission = self.stage.emitters.emit(&stream);
         let (mut origin, mut direction, mut power) = (emission.origin, emission.direction, emission.power);
@@ -112,8 +99,7 @@ impl Tracer<'_> {
             let hit = self.stage.accel.closest_hit(origin, direction, f32::MAX);
             if bounce > 0 || emission.deposit_first {
                 let length = hit.as_ref().map_or(f32::INFINITY, |hit| hit.distance);
-                estimate
-                    .deposit(&Flight { origin, direction, length, power: meet.outside(power, basic) }, sums);
+                deposit(Flight { origin, direction, length, power: meet.outside(power, basic) });
             }
             let Some(hit) = hit else {
                 add(&mut books.escaped, energy);

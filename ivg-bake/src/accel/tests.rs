@@ -240,3 +240,20 @@ fn boxes_on_a_floor_stay_closed() {
         );
     }
 }
+
+/// A groove in a kitchen: its side is long, thin and seen nearly from its edge, and an edge function's rounding moves the hit by
+/// more than its distance. In exact arithmetic the side is hit at 0.003 392 786 3, its bottom behind it at 0.094 155.
+#[test]
+fn near_hits_on_long_thin_triangles_are_not_lost() {
+    let (x, front, back) = (210.585_85, -241.354_61, -241.287_3);
+    let (low, high) = (-30.388_73, 152.821_76);
+    let side = [Vec3::new(x, low, back), Vec3::new(x, high, front), Vec3::new(x, low, front)];
+    let bottom = [Vec3::new(x, low, back), Vec3::new(213.150_33, high, back), Vec3::new(x, high, back)];
+    let scene = TraceScene::new(&[bottom, side]).unwrap();
+    let origin = Vec3::new(210.585_65, 65.126_625, -241.353_44);
+    let direction = Vec3::new(0.058_466_475, 0.709_248_07, 0.702_530_3);
+    let hit = scene.closest_hit(origin, direction, f32::MAX).unwrap();
+    assert_eq!(hit.triangle, 1);
+    assert!((hit.distance - 0.003_392_786_3).abs() < 1e-9, "{}", hit.distance);
+    assert!(scene.occluded(origin, direction, 0.0034) && !scene.occluded(origin, direction, 0.0033));
+}

@@ -1,7 +1,7 @@
 use glam::{DVec3, Vec3};
 use ivg_format::Lattice;
 
-use super::Boxes;
+use super::{Boxes, Line};
 use crate::sampling::hemisphere::sphere;
 use crate::sampling::rng::{Purpose, Stream};
 use crate::space::Space;
@@ -47,7 +47,7 @@ fn lengths_in_every_box_agree_with_clipping() {
         }
         let to = if v[2] < 0.3 { f32::INFINITY } else { v[3] * 8.0 };
         let mut lengths = vec![0f64; boxes.len()];
-        boxes.walk(origin, direction, 0.0, to, |at, t0, t1| {
+        boxes.walk(&Line::new(origin, direction), 0.0, to, |at, t0, t1| {
             assert!(t1 > t0);
             lengths[boxes.index(at)] += f64::from(t1) - f64::from(t0);
         });
@@ -61,9 +61,13 @@ fn lengths_in_every_box_agree_with_clipping() {
 
 #[test]
 fn nothing_is_visited_outside() {
-    boxes().walk(Vec3::new(-9.0, 2.0, 2.0), Vec3::NEG_X, 0.0, f32::INFINITY, |_, _, _| panic!("visited"));
-    boxes().walk(Vec3::new(-9.0, 9.0, 2.0), Vec3::X, 0.0, f32::INFINITY, |_, _, _| panic!("visited"));
-    boxes().walk(Vec3::new(0.0, 2.0, 2.0), Vec3::X, 1.0, 1.0, |_, _, _| panic!("visited"));
+    boxes().walk(&Line::new(Vec3::new(-9.0, 2.0, 2.0), Vec3::NEG_X), 0.0, f32::INFINITY, |_, _, _| {
+        panic!("visited")
+    });
+    boxes().walk(&Line::new(Vec3::new(-9.0, 9.0, 2.0), Vec3::X), 0.0, f32::INFINITY, |_, _, _| {
+        panic!("visited")
+    });
+    boxes().walk(&Line::new(Vec3::new(0.0, 2.0, 2.0), Vec3::X), 1.0, 1.0, |_, _, _| panic!("visited"));
 }
 
 #[test]

@@ -69,8 +69,8 @@ impl<'a> FaceCrossing<'a> {
         match self.regions.map(|regions| regions.get(vertex)) {
             Some(Region::Whole) => 1.0,
             Some(Region::Nothing) => 0.0,
-            Some(Region::Part(mask)) => {
-                f64::from(mask.layer_count(axis, self.layer(axis, at[axis]))) / (SUB * SUB) as f64
+            Some(Region::Part(part)) => {
+                f64::from(part.mask.layer_count(axis, self.layer(axis, at[axis]))) / (SUB * SUB) as f64
             }
             // RR-6983: "except for grid boundary vertices, where the area is divided by two, and for grid corner
             // vertices, where it is divided by four".
@@ -100,7 +100,7 @@ impl<'a> FaceCrossing<'a> {
         let counts = match self.regions.map(|regions| regions.get(vertex)) {
             None | Some(Region::Whole) => true,
             Some(Region::Nothing) => false,
-            Some(Region::Part(mask)) => mask.contains(sub),
+            Some(Region::Part(part)) => part.mask.contains(sub),
         };
         counts.then_some(vertex)
     }

@@ -3,6 +3,7 @@
 pub(crate) mod face_crossing;
 pub(crate) mod gather;
 pub(crate) mod held;
+pub(crate) mod queue;
 pub(crate) mod track_length;
 pub(crate) mod vertex_gather;
 

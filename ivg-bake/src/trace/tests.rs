@@ -2,9 +2,8 @@ use glam::{DVec3, Vec3};
 use ivg_scene::Material;
 
 use super::{Books, Tracer};
-use crate::accumulate::{Sums, Total};
 use crate::cases::SceneBuilder;
-use crate::estimate::{Estimate, Flight};
+use crate::estimate::Flight;
 use crate::sampling::hemisphere;
 use crate::sampling::rng::{Purpose, Stream};
 use crate::stage::{Effects, Stage};
@@ -18,29 +17,6 @@ struct Count {
     largest: f32,
 }
 
-impl Sums for Count {
-    fn add<const N: usize>(&mut self, _first: usize, quanta: &[f32; N]) {
-        self.flights += 1;
-        self.largest = self.largest.max(quanta[0]);
-    }
-}
-
-struct EachFlight;
-
-impl Estimate for EachFlight {
-    type Value = ();
-
-    fn sums(&self) -> usize {
-        1
-    }
-
-    fn deposit(&self, flight: &Flight, sums: &mut impl Sums) {
-        sums.add(0, &[flight.power.max_element()]);
-    }
-
-    fn value(&self, _sums: &Total<'_>, _vertex: usize, _power: f64) {}
-}
-
 fn trace(builder: SceneBuilder, photons: u64, max_bounces: u32) -> (Books, Count) {
     trace_with(builder, DIFFUSE, photons, max_bounces)
 }
@@ -50,7 +26,11 @@ fn trace_with(builder: SceneBuilder, effects: Effects, photons: u64, max_bounces
     let stage = Stage::new(&scene, &flat, effects, None).unwrap();
     let tracer = Tracer { stage: &stage, seed: 3, max_bounces };
     let (mut books, mut count) = (Books::default(), Count::default());
-    (0..photons).for_each(|photon| tracer.trace(photon, &EachFlight, &mut count, &mut books));
+    let mut deposit = |flight: Flight| {
+        count.flights += 1;
+        count.largest = count.largest.max(flight.power.max_element());
+    };
+    (0..photons).for_each(|photon| tracer.trace(photon, &mut deposit, &mut books));
     (books, count)
 }
 

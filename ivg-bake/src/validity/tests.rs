@@ -5,7 +5,7 @@ use super::{Surroundings, directions, distances};
 use crate::Silent;
 use crate::cases::SceneBuilder;
 use crate::dual::Boxes;
-use crate::region::Region;
+use crate::region::{Part, Region};
 use crate::stage::{Effects, Stage};
 use crate::workers::Workers;
 
@@ -41,7 +41,7 @@ fn vertices_on_the_walls_belong_to_the_room() {
         let share = found.regions.get(vertex).share();
         assert_eq!(share, 0.5f64.powi(walls as i32), "{at:?}");
         assert_eq!(found.validity[vertex], 255, "{at:?}");
-        let Region::Part(mask) = found.regions.get(vertex) else { continue };
+        let Region::Part(Part { mask, .. }) = found.regions.get(vertex) else { continue };
         for x in 0..8 {
             let inside = if at[0] == 0 { x >= 4 } else { at[0] != 4 || x < 4 };
             assert_eq!(mask.layer_count(0, x) > 0, inside, "{at:?} layer {x}");

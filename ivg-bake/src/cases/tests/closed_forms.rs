@@ -10,7 +10,7 @@ use crate::cases::{
     SceneBuilder, ball_under_sky, cavity_with_source, cross_coloured_grid, cross_coloured_walls, difference,
     furnace_on_lattice, lit_disk, parallel_plates, plan,
 };
-use crate::dual::Boxes;
+use crate::dual::{Boxes, Line};
 use crate::{BakeError, BakeOptions, BakeResult, Silent, bake};
 
 /// With those of `balls_under_an_even_sky_are_as_dark_as_they_absorb`, of albedo 0, 0.5 and 1.
@@ -228,7 +228,7 @@ fn flights_in_faces_edges_and_corners_of_cells_are_counted_once() {
         ("from a corner", Vec3::splat(2.0), Vec3::Y, 2.0),
     ] {
         let (mut sum, mut last) = (0.0, 0.0f32);
-        boxes.walk(origin, direction, 0.0, 100.0, |_, t0, t1| {
+        boxes.walk(&Line::new(origin, direction), 0.0, 100.0, |_, t0, t1| {
             assert!(t0 >= last && t1 > t0, "{what}: one after the other");
             (sum, last) = (sum + f64::from(t1 - t0), t1);
         });
