@@ -44,8 +44,8 @@
 //!   | | 48 × 16 × 72 | 0.992 | 11 % |
 //!   | | 64 × 32 × 96 | 0.997 | 4 % |
 //!
-//!   It is what lies between vertices that is off, not their light: in the hotel's worst part at 34 × 7 × 42 the ratio is 0.85, and 0.84
-//!   if every vertex is path traced ([`Estimator::Gather`]).
+//!   It is what lies between vertices that is off, not their light: in the hotel's worst part at 34 × 7 × 42 the ratio is 0.85,
+//!   and 0.84 if every vertex is path traced ([`Estimator::Gather`]).
 //!   Steps of a tenth of a metre to a fifth keep the mean within 2 % and all parts within 10 %. The automatic resolution
 //!   ([`resolution()`]) can be coarser: it measures how light changes on a grid of 16 vertices along the longest axis, which shows
 //!   nothing of what is finer.
