@@ -2,7 +2,7 @@
 //! alone: verdict, error code, byte offset and every decoded value must agree. The bodies of the fuzz targets `ivg_vs_c` and
 //! `pmesh_vs_c`, which a test on the stable toolchain calls too.
 //!
-//! [`readers`] is the only module of the product that calls C, and the only one with unsafe code.
+//! `readers.rs` is the only file of ours that calls C, and the only one with unsafe code.
 //!
 //! ```
 //! // Neither reader takes this for a file, and both say so in the same way.
