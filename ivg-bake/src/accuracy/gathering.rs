@@ -18,6 +18,9 @@ const FIRST_PATHS: u32 = 128;
 /// Share of the squared error asked for that vertices may have in the mean, so that the bound stays below it.
 const AIM: f64 = 0.9;
 
+/// With little time, vertices have one in so many of their paths first.
+const PARTS: [u32; 3] = [16, 4, 1];
+
 /// Gathers at every vertex that light reaches: with the options' paths, or to their accuracy. If there is a limit to the time, every
 /// vertex has a few paths first, and as many as it is to have afterwards.
 pub(crate) fn run<V: Held + Default>(job: &Job<'_>) -> Result<Simulated, BakeError>
@@ -33,11 +36,10 @@ where
         job.workers.monitor.progress(done.min(vertices.len() as u64), vertices.len() as u64);
         gather
     };
-    let all = Enough::Paths(job.options.paths);
     let first = match (job.options.accuracy, job.workers.monitor.time_spent()) {
         (_, Some(_)) => Enough::Roughly(FIRST_PATHS),
         (Some(_), None) => Enough::Paths(FEWEST_PATHS),
-        (None, None) => all,
+        (None, None) => Enough::Paths(job.options.paths),
     };
     let mut gathers = map(&job.workers, vertices.len(), |n| one(vertices[n], first))?;
     let mut paths: u64 = gathers.iter().map(|gather| u64::from(gather.paths)).sum();
@@ -45,16 +47,29 @@ where
         .options
         .accuracy
         .map(|asked| AIM * asked.powi(2) * signal(&gathers) / vertices.len().max(1) as f64);
-    let wanted = aim.map_or(all, |variance| Enough::Variance { variance, most: job.options.paths });
+    let most = job.options.paths;
+    // With little time all vertices have a part of their paths before any has all: these are traced anew, a third more.
+    let timed = job.workers.monitor.time_spent().is_some();
+    let parts: &[u32] = if timed { &PARTS } else { &[1] };
+    let step = |&part: &u32| match aim {
+        Some(aim) => Some(Enough::Variance { variance: aim * f64::from(part), most }),
+        None => (part == 1 || most / part >= FEWEST_PATHS).then_some(Enough::Paths(most / part)),
+    };
+    // Those left rough if the time is up are not all in one place.
+    let order = scattered(vertices.len());
     let mut rough = 0;
-    if wanted != first {
+    for wanted in parts.iter().filter_map(step).filter(|wanted| *wanted != first) {
         done.store(0, Ordering::Relaxed);
-        // Those left rough if the time is up are not all in one place.
-        let order = scattered(vertices.len());
         let finer = map_until(&job.workers, 1.0, order.len(), |n| one(vertices[order[n]], wanted))?;
         paths += finer.iter().map(|gather| u64::from(gather.paths)).sum::<u64>();
-        rough = order.len() - finer.len();
-        order.into_iter().zip(finer).for_each(|(n, finer)| gathers[n] = finer);
+        // Only the last step gives a vertex all its paths.
+        let finished = if wanted == last_step(aim, most) { finer.len() } else { 0 };
+        rough = order.len() - finished;
+        let stopped = finer.len() < order.len();
+        order.iter().zip(finer).for_each(|(&n, finer)| gathers[n] = finer);
+        if stopped {
+            break;
+        }
     }
     let accuracy = job.options.accuracy.zip(aim);
     let accuracy = accuracy.map(|(asked, aim)| report(&gathers, asked, aim, rough > 0, paths));
@@ -63,6 +78,11 @@ where
         values[vertex] = V::gathered(&gather.numbers);
     }
     Ok(Simulated { values: values.into(), books: Books::default(), photons: 0, accuracy, paths, rough })
+}
+
+/// How well vertices are to be gathered in the end.
+fn last_step(aim: Option<f64>, most: u32) -> Enough {
+    aim.map_or(Enough::Paths(most), |variance| Enough::Variance { variance, most })
 }
 
 /// The numbers below `count`, each once, neighbours far from each other: steps of the golden section.

@@ -91,11 +91,11 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
     }
     if stats.rough_vertices > 0 {
         files::print(&format!(
-            "{} vertices have fewer paths than the others: the time was up\n",
-            stats.rough_vertices
+            "{} of {} vertices have fewer paths than asked for: the time was up\n",
+            stats.rough_vertices, stats.valid_vertices
         ))?;
     }
-    files::print(&report::stages_text(&baked.stages))?;
+    files::print(&report::stages_text(&baked.stages, baked.elapsed))?;
     if let Some(report) = &baked.accuracy {
         files::print(&report::accuracy_text(report))?;
         if !report.holds() {

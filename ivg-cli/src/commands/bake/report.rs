@@ -1,5 +1,7 @@
 //! What a bake says about its time and its error.
 
+use std::time::Duration;
+
 use ivg_bake::{AccuracyReport, CONFIDENCE, EndedBy};
 use serde_json::{Value, json};
 
@@ -13,12 +15,15 @@ pub(super) fn stage_json(time: &StageTime) -> Value {
     })
 }
 
-pub(super) fn stages_text(times: &[StageTime]) -> String {
+/// The parts of a bake that took so long in all, and what is left of that for what is no part of the bake.
+pub(super) fn stages_text(times: &[StageTime], elapsed: Duration) -> String {
     let text = |time: &StageTime| {
         let cpu = time.cpu.map_or_else(String::new, |cpu| format!(" ({:.2} s of CPU)", cpu.as_secs_f64()));
         format!("{} {:.2} s{cpu}", time.name(), time.wall.as_secs_f64())
     };
-    format!("{}\n", times.iter().map(text).collect::<Vec<_>>().join(", "))
+    let rest = elapsed.saturating_sub(times.iter().map(|time| time.wall).sum());
+    let parts = times.iter().map(text).collect::<Vec<_>>().join(", ");
+    format!("{parts}, reading, planning and coding {:.2} s\n", rest.as_secs_f64())
 }
 
 pub(super) fn accuracy_json(report: &AccuracyReport) -> Value {
