@@ -42,7 +42,7 @@
 //!   | | 48 × 24 × 48 | 1.012 | 6 % |
 //!   | hotel room, 10 m, a lamp through a wall | 34 × 7 × 42 | 0.986 | 15 % |
 //!   | | 48 × 16 × 72 | 0.992 | 11 % |
-//!   | | 64 × 32 × 96 | 0.997 | 4 % |
+//!   | | 64 × 32 × 96 | 0.996 | 6 % |
 //!
 //!   It is what lies between vertices that is off, not their light: in the hotel's worst part at 34 × 7 × 42 the ratio is 0.85,
 //!   and 0.84 if every vertex is path traced ([`Estimator::Gather`]).
