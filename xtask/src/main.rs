@@ -43,7 +43,7 @@ enum PeersCommand {
     Picture(PeersOptions),
     /// Check 200 random levels of each mesh, of raw and of coded files.
     Levels(PeersOptions),
-    /// Baked light beside Mitsuba 3 and Embree, and which targets are met; 13 minutes on two idle cores.
+    /// Baked light beside Mitsuba 3 and Embree, and which targets are met; 9 minutes on two idle cores.
     Bake(PeersOptions),
 }
 
