@@ -12,7 +12,7 @@ use crate::scene_args::{Bounds, GridArgument};
 #[derive(Debug, Args)]
 pub(crate) struct BakeSettings {
     /// Number of grid vertices along x, y and z; auto: as the scene asks for: from an eighth of the distance that light flies
-    /// between surfaces, finer or coarser along each axis by how much light changes along it, with at most 262144 vertices,
+    /// between surfaces, finer or coarser along each axis so that light changes by 7 % a step, with at most 262144 vertices,
     /// those that --budget leaves room for, and those that the photons of --time bring enough light to. The reason is printed.
     #[arg(long, value_name = "NXxNYxNZ", default_value = "16x16x16")]
     pub(crate) grid: GridArgument,
