@@ -290,3 +290,6 @@ fn shuffle(vertices: &mut [usize], seed: u64) {
         vertices.swap(last, other as usize);
     }
 }
+
+#[cfg(test)]
+mod tests;
