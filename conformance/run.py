@@ -14,7 +14,9 @@ import concurrent.futures
 import hashlib
 import json
 import os
+import re
 import shlex
+import signal
 import struct
 import subprocess
 import sys
@@ -32,6 +34,10 @@ NOTHING = 0xFFFFFFFF
 LISTED = 40  # failed tests that are listed
 COMPLAINTS = 3  # lines of standard error that are shown of a failed test
 KEPT = 64 << 10  # bytes that are kept of what a decoder prints
+CLAUSES = 12  # clauses that are named of those of which every test failed
+HEMISPHERES = ("+x", "-x", "+y", "-y", "+z", "-z")  # IVG-DEF-03
+CHANNELS, COORDINATES, COEFFICIENTS = 3, 3, 9
+NEXT_CLAUSE = r"\n(?=\*\*[A-Z]+-[A-Z]+-[0-9]+\*\*|#)"
 
 
 # ---- The suite ----
@@ -138,7 +144,9 @@ class Capabilities:
 def start(words, limit):
     """How a program ended (a kind and a number or text), the beginnings of what it printed and complained of."""
     try:
-        child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        # In a session of its own, so that those that a script starts can be ended with it.
+        streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        child = subprocess.Popen(words, start_new_session=True, **streams)
     except OSError as error:
         return ("not started", 0), "", str(error)
     kept = [b"", b""]
@@ -148,8 +156,8 @@ def start(words, limit):
             for block in iter(lambda: stream.read1(4096), b""):
                 kept[number] += block[: KEPT - len(kept[number])]
 
-    streams = enumerate([child.stdout, child.stderr])
-    threads = [threading.Thread(target=keep, args=pair, daemon=True) for pair in streams]
+    pairs = enumerate([child.stdout, child.stderr])
+    threads = [threading.Thread(target=keep, args=pair, daemon=True) for pair in pairs]
     for thread in threads:
         thread.start()
     try:
@@ -158,11 +166,19 @@ def start(words, limit):
             thread.join()
         end = ("status", status) if status >= 0 else ("signal", -status)
     except subprocess.TimeoutExpired:
-        child.kill()
-        child.wait()
+        end_all(child)
         end = ("hung", 0)
     text = [data.decode("utf-8", "replace") for data in kept]
     return end, text[0], text[1]
+
+
+def end_all(child):
+    """Kills a program and those that it started."""
+    try:
+        os.killpg(child.pid, signal.SIGKILL)
+    except (AttributeError, OSError):
+        child.kill()
+    child.wait()
 
 
 def seen(end, stdout):
@@ -215,6 +231,7 @@ class Run:
         answer["status"], answer["expected"] = "failed", expected
         if self.hangs >= HANGS:
             answer["detail"] = "not started: the decoder gave no answer %d times" % HANGS
+            tell(answer, test)
             return answer, ""
         words = [test["op"]]
         if "format" in test:
@@ -229,10 +246,13 @@ class Run:
         found, verdict, printed = seen(end, stdout)
         answer["found"] = found
         detail = ""
+        written = os.path.exists(out)
         if verdict is None:
             detail = found
         elif verdict not in verdicts:
             detail = "expected %s, found %s" % (expected, found)
+        elif verdict in ("ok", "need-more") and not written:
+            detail = "OUT was not written"
         elif verdict == test["verdict"]:
             if code is not None and printed is None:
                 detail = "expected the code %d, found no code on standard output" % code
@@ -242,6 +262,7 @@ class Run:
                 detail = self.compare(test, out)
         if detail:
             answer["detail"] = detail
+            tell(answer, test)
         else:
             answer["status"] = "passed"
         return answer, stderr
@@ -249,8 +270,6 @@ class Run:
     def compare(self, test, out):
         """In what OUT differs; nothing if it does not."""
         expected = test["out"]
-        if not os.path.exists(out):
-            return "OUT was not written"
         if expected["form"] == "rows":
             return compare_rows(out, self.suite.read(expected["file"]), expected["bytes"])
         with open(out, "rb") as file:
@@ -258,6 +277,13 @@ class Run:
         if hashlib.sha256(found).hexdigest() == expected["sha256"]:
             return ""
         return difference(test, self.suite.expected(expected), found) or "the suite is damaged"
+
+
+def tell(answer, test):
+    """What a failed test shows, for who has only the report."""
+    answer["why"] = test["why"]
+    if test.get("clauses"):
+        answer["clauses"] = test["clauses"]
 
 
 def compare_rows(out, hashes, length):
@@ -388,14 +414,42 @@ def difference(test, expected, found):
         if len(data) < size:
             return "nothing"
         whole = int.from_bytes(data, "little")
-        return str(whole) if kind == "whole" else "0x%0*X" % (2 * size, whole)
+        if kind == "whole":
+            return str(whole)
+        number = struct.unpack("<f" if size == 4 else "<d", data)[0]
+        return "%s (0x%0*X)" % (decimal(number), 2 * size, whole)
 
     if test["op"] == "prefixes":
         name = "after %d bytes: %s" % (index // 2, ["exit status", "records"][index % 2])
+    elif name == "values":
+        name = "values[%d], %s" % (index, value_name(expected, index))
     elif count != 1:
         name = "%s[%d]" % (name, index)
     also = "" if len(expected) == len(found) else "; " + lengths
     return "%s (byte %d): expected %s, found %s%s" % (name, place, show(expected), show(found), also)
+
+
+def decimal(number):
+    """Seven digits, as the runner in Rust writes them."""
+    text = "%.6e" % number
+    digits, e, exponent = text.partition("e")
+    return "%se%d" % (digits, int(exponent)) if e else text.replace("nan", "NaN")
+
+
+def value_name(out, index):
+    """Which number of which vertex a value of a grid is."""
+    walk = Walk(out)
+    grid(walk)
+    harmonics = walk.word(4 * 3 + 8 * 6 + 4) == 1
+    received = next(field for field in walk.fields if field[0] == "received")
+    each = CHANNELS * (COEFFICIENTS if harmonics else COORDINATES * len(HEMISPHERES))
+    arrived = [n for n in range(received[3]) if out[received[1] + n : received[1] + n + 1] == b"\1"]
+    vertex, number = divmod(index, each)
+    vertex = "vertex %d" % arrived[vertex] if vertex < len(arrived) else "no vertex"
+    if harmonics:
+        return "%s, %s, coefficient %d" % (vertex, "RGB"[number // COEFFICIENTS], number % COEFFICIENTS)
+    hemisphere, number = divmod(number, CHANNELS * COORDINATES)
+    return "%s, hemisphere %s, %s, %s" % (vertex, HEMISPHERES[hemisphere], "RGB"[number // 3], "xyz"[number % 3])
 
 
 # ---- Commands ----
@@ -422,17 +476,43 @@ def counts(answers):
     return {name: sum(answer["status"] == name for answer, _ in answers) for name in names}
 
 
-def show_run(decoder, answers, took):
+def telling(failed):
+    """As many failed tests as are listed: those first that are about another clause than the ones before, in the order of the suite."""
+    clauses, new, others = set(), [], []
+    for number, (answer, _) in enumerate(failed):
+        mine = set(answer.get("clauses", []))
+        (others if mine <= clauses else new).append(number)
+        clauses |= mine
+    return [failed[number] for number in sorted((new + others)[:LISTED])]
+
+
+def broken(suite, answers):
+    """The clauses of which a test failed and none passed, those with the most failed tests first."""
+    failed, passed = {}, set()
+    for answer, _ in answers:
+        for clause in suite.by_id[answer["id"]].get("clauses", []):
+            if answer["status"] == "failed":
+                failed[clause] = failed.get(clause, 0) + 1
+            elif answer["status"] == "passed":
+                passed.add(clause)
+    return sorted((clause for clause in failed if clause not in passed), key=lambda clause: (-failed[clause], clause))
+
+
+def show_run(suite, decoder, answers, took):
     count = counts(answers)
     failed = [(answer, stderr) for answer, stderr in answers if answer["status"] == "failed"]
-    for answer, stderr in failed[:LISTED]:
+    for answer, stderr in telling(failed):
         print("FAILED %s: %s" % (answer["id"], answer["detail"]))
         for line in stderr.splitlines()[:COMPLAINTS]:
             print("    | " + line)
     if len(failed) > LISTED:
         print("and %d more; --json FILE lists all" % (len(failed) - LISTED))
+    nothing_passed = broken(suite, answers)
+    if nothing_passed:
+        more = ", and %d more" % (len(nothing_passed) - CLAUSES) if len(nothing_passed) > CLAUSES else ""
+        print("every test of these clauses failed: %s%s" % (", ".join(nothing_passed[:CLAUSES]), more))
     if failed:
-        print("what is in a test, and why: explain %s" % failed[0][0]["id"])
+        print("what is in a test, and why: explain %s" % telling(failed)[0][0]["id"])
     print("%s, in %.1f s" % (decoder, took))
     line = "%d passed, %d failed" % (count["passed"], count["failed"])
     line += ", %d not claimed" % count["not-claimed"] if count["not-claimed"] else ""
@@ -463,7 +543,7 @@ def command_run(suite, args):
     if args.junit:
         with open(args.junit, "w", encoding="utf-8") as file:
             file.write(junit(answers, count))
-    return show_run(decoder, answers, took)
+    return show_run(suite, decoder, answers, took)
 
 
 def junit(answers, count):
@@ -474,7 +554,8 @@ def junit(answers, count):
     for answer, _ in answers:
         inner = {"not-claimed": '<skipped message="not claimed"/>', "skipped": "<skipped/>"}.get(answer["status"], "")
         if answer["status"] == "failed":
-            inner = '<failure message="%s"/>' % escape(answer["detail"], quote)
+            about = "; ".join([answer["why"]] + answer.get("clauses", []))
+            inner = '<failure message="%s">%s</failure>' % (escape(answer["detail"], quote), escape(about, quote))
         text += '  <testcase name="%s">%s</testcase>\n' % (escape(answer["id"], quote), inner)
     return text + "</testsuite>\n"
 
@@ -521,7 +602,7 @@ def command_explain(suite, args):
         began = time.monotonic()
         decoder, answers = run_tests(suite, args.decoder, [test], [], 1, 10)
         print()
-        return show_run(decoder, answers, time.monotonic() - began)
+        return show_run(suite, decoder, answers, time.monotonic() - began)
     return 0
 
 
@@ -545,15 +626,16 @@ def show_edits(twin, edits):
 
 
 def clause_text(suite, clause):
-    """The paragraph of the specification that defines it, if the specification lies beside the suite."""
+    """What the specification says of it, up to the next clause or heading, if it lies beside the suite."""
     for folder in ("spec", "../spec", "../../spec"):
         for document in ("common.md", "ivg.md", "pmesh.md"):
             path = os.path.join(suite.folder, folder, document)
             if os.path.exists(path):
                 with open(path, encoding="utf-8") as file:
-                    for paragraph in file.read().split("\n\n"):
-                        if paragraph.startswith("**%s**" % clause):
-                            return paragraph
+                    text = "\n" + file.read()
+                start = text.find("\n**%s**" % clause)
+                if start >= 0:
+                    return re.split(NEXT_CLAUSE, text[start + 1 :])[0].rstrip()
     return clause
 
 

@@ -73,10 +73,22 @@ impl Case {
         assert_eq!(report::junit(&rust), read("results.xml"), "{}", self.decoder);
         let text = String::from_utf8(python.stdout).unwrap();
         assert_eq!(text.lines().last(), Some(report::summary(&rust).as_str()), "{}", self.decoder);
+        let untimed = |text: &str| -> Vec<String> {
+            text.lines()
+                .filter(|line| !line.ends_with(" s") && !line.starts_with("    | "))
+                .map(str::to_owned)
+                .collect()
+        };
+        let ours = text_of(&rust) + &report::summary(&rust);
+        assert_eq!(untimed(&ours), untimed(&text), "{}", self.decoder);
         let failed = rust.count(Status::Failed) > 0;
         assert_eq!(python.status.code(), Some(i32::from(failed)), "{}", self.decoder);
         rust
     }
+}
+
+fn text_of(results: &Results) -> String {
+    report::text(&Suite::open(&vectors()).unwrap(), results)
 }
 
 /// How many tests were not left out.
@@ -88,7 +100,7 @@ fn run_of(results: &Results) -> usize {
 fn both_say_that_a_good_decoder_passes() {
     let results = Case::new(adapter(), "5").compare();
     assert!(results.count(Status::Passed) > 500, "{}", report::summary(&results));
-    assert_eq!(results.count(Status::Failed), 0, "{}", report::text(&results));
+    assert_eq!(results.count(Status::Failed), 0, "{}", text_of(&results));
     assert!(results.count(Status::Skipped) > 0);
 }
 
@@ -97,7 +109,7 @@ fn both_say_that_a_bad_decoder_fails_everything() {
     for decoder in
         ["sh -c 'exit 0'", "sh -c 'exit 41'", "sh -c 'kill -SEGV $$'", "sh -c 'exit 1'", "/no/such/decoder"]
     {
-        for only in ["ivg/0005*", "pmesh/x-11*", "numeric"] {
+        for only in ["ivg/0005*", "pmesh/x-11*", "x-603", "numeric"] {
             let results = Case::new(decoder, only).compare();
             assert_eq!(results.count(Status::Failed), run_of(&results), "{decoder}, {only}");
         }
@@ -106,10 +118,16 @@ fn both_say_that_a_bad_decoder_fails_everything() {
 
 #[test]
 fn both_stop_waiting_for_a_decoder_that_gives_no_answer() {
-    let results = Case { limit: 1, ..Case::new("sh -c 'exec sleep 1000'", "ivg/000*") }.compare();
+    let folder = tempfile::tempdir().unwrap();
+    let mark = folder.path().join("alive").display().to_string();
+    // What hangs was started by what was started.
+    let decoder = format!("sh -c 'sh -c \"sleep 4; touch {mark}\"; true'");
+    let results = Case { limit: 1, ..Case::new(decoder, "ivg/000*") }.compare();
     assert!(results.answers.len() > 50);
     assert_eq!(results.count(Status::Failed), run_of(&results));
     assert_eq!(results.answers[0].detail, "no answer in time");
+    std::thread::sleep(Duration::from_secs(4));
+    assert!(!Path::new(&mark).exists(), "it was ended too");
 }
 
 #[test]
@@ -120,7 +138,11 @@ fn both_name_the_first_number_that_differs() {
         let results = Case::new(decoder, only).compare();
         assert_eq!(results.count(Status::Passed), 0);
         let named = results.answers.iter().filter(|answer| answer.detail.contains("(byte ")).count();
-        assert!(named > 5, "{}", report::text(&results));
+        assert!(named > 5, "{}", text_of(&results));
+        let text = text_of(&results);
+        assert!(text.contains("every test of these clauses failed: "), "{text}");
+        let ours = results.answers.iter().find(|answer| !answer.clauses.is_empty()).unwrap();
+        assert!(report::junit(&results).contains(&format!("; {}", ours.clauses[0])));
     }
 }
 
@@ -178,7 +200,7 @@ fn both_explain_and_list_alike() {
 fn the_small_reader_in_python_passes_what_it_claims() {
     let adapter = Path::new(env!("CARGO_MANIFEST_DIR")).join("adapters/python/adapter.py");
     let results = Case::new(format!("python3 '{}'", adapter.display()), "ivg/0005*").in_rust();
-    assert_eq!(results.count(Status::Failed), 0, "{}", report::text(&results));
+    assert_eq!(results.count(Status::Failed), 0, "{}", text_of(&results));
     assert!(results.count(Status::Passed) > 10, "{}", report::summary(&results));
     assert!(results.count(Status::NotClaimed) > 3, "{}", report::summary(&results));
 }

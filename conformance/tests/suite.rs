@@ -282,6 +282,6 @@ fn our_decoders_pass_every_test() {
     let suite = Suite::open(&vectors()).unwrap();
     let options = Options { decoder: adapter(), only: None, skip: Vec::new(), jobs: 4, limit: LIMIT };
     let results = conformance_runner::run::run(&suite, &options).unwrap();
-    let text = conformance_runner::report::text(&results);
+    let text = conformance_runner::report::text(&suite, &results);
     assert_eq!(results.count(Status::Passed), suite.manifest.tests.len(), "{text}");
 }

@@ -92,7 +92,7 @@ fn edits(suite: &Suite, test: &Test, twin: &str, edits: &[Edit]) -> String {
     text
 }
 
-/// The paragraph of the specification that defines a clause, if the specification lies beside the suite.
+/// What the specification says of a clause, up to the next clause or heading, if it lies beside the suite.
 fn clause_text(suite: &Suite, clause: &str) -> Option<String> {
     let folders = ["spec", "../spec", "../../spec"].map(|folder| suite.folder.join(folder));
     let folder: &PathBuf = folders.iter().find(|folder| folder.join("common.md").exists())?;
@@ -101,7 +101,24 @@ fn clause_text(suite: &Suite, clause: &str) -> Option<String> {
         let text = fs::read_to_string(folder.join(document)).ok()?;
         let start =
             text.match_indices(&mark).map(|(at, _)| at).find(|&at| at == 0 || text[..at].ends_with('\n'))?;
-        let end = text[start..].find("\n\n").map_or(text.len(), |length| start + length);
-        Some(text[start..end].to_owned())
+        let lines = text[start..].split('\n');
+        let own = lines.enumerate().take_while(|(number, line)| *number == 0 || !begins_another(line));
+        let own: Vec<&str> = own.map(|(_, line)| line).collect();
+        Some(own.join("\n").trim_end().to_owned())
     })
+}
+
+/// Whether a line begins another clause or a section.
+fn begins_another(line: &str) -> bool {
+    let name = line.strip_prefix("**").and_then(|rest| rest.split_once("**")).map(|(name, _)| name);
+    line.starts_with('#') || name.is_some_and(is_clause)
+}
+
+/// Whether it is a name such as IVG-DIR-03.
+fn is_clause(name: &str) -> bool {
+    let parts: Vec<&str> = name.split('-').collect();
+    let of = |part: &str, kind: fn(&u8) -> bool| !part.is_empty() && part.bytes().all(|byte| kind(&byte));
+    matches!(parts[..], [document, part, number] if of(document, u8::is_ascii_uppercase)
+        && of(part, u8::is_ascii_uppercase)
+        && of(number, u8::is_ascii_digit))
 }

@@ -95,7 +95,7 @@ fn grid(walk: &mut Walk<'_>) {
     walk.put("origin", 8, 3, Kind::F64);
     walk.put("step", 8, 3, Kind::F64);
     walk.words("units", 1);
-    walk.words("quantity", 1);
+    walk.words(QUANTITY, 1);
     let lights = walk.next("lights");
     for light in 0..if lights == NOTHING { 0 } else { lights } {
         if walk.at >= walk.out.len() {
@@ -107,11 +107,11 @@ fn grid(walk: &mut Walk<'_>) {
     }
     let length = walk.next("bytes of the metadata");
     walk.text("metadata", length);
-    for name in ["received", "validity", "blocked"] {
+    for name in [RECEIVED, "validity", "blocked"] {
         walk.bytes(name, vertices);
     }
     let left = walk.out.len().saturating_sub(walk.at);
-    walk.put("values", 4, left / 4, Kind::F32);
+    walk.put(VALUES, 4, left / 4, Kind::F32);
 }
 
 fn mesh(walk: &mut Walk<'_>) {
@@ -148,6 +148,45 @@ fn mesh(walk: &mut Walk<'_>) {
     walk.put("materials", 2, has(3, faces), Kind::Whole);
 }
 
+/// Fields of a grid that tell which number of which vertex a value is.
+const QUANTITY: &str = "quantity";
+const RECEIVED: &str = "received";
+const VALUES: &str = "values";
+/// The hemispheres in their order (IVG-DEF-03).
+const HEMISPHERES: [&str; 6] = ["+x", "-x", "+y", "-y", "+z", "-z"];
+const CHANNELS: [&str; 3] = ["R", "G", "B"];
+const COORDINATES: [&str; 3] = ["x", "y", "z"];
+/// Coefficients of harmonics of a channel.
+const COEFFICIENTS: usize = 9;
+
+/// Which number of which vertex a value of a grid is.
+fn value_name(fields: &[Field], out: &[u8], index: usize) -> String {
+    let bytes = |name: &str| {
+        let field = fields.iter().find(|field| field.name == name);
+        field.and_then(|field| out.get(field.at..field.at + field.size * field.count)).unwrap_or_default()
+    };
+    let harmonics = bytes(QUANTITY) == [1, 0, 0, 0];
+    let of_hemisphere = CHANNELS.len() * COORDINATES.len();
+    let of_vertex = if harmonics { CHANNELS.len() * COEFFICIENTS } else { HEMISPHERES.len() * of_hemisphere };
+    let mut arrived = bytes(RECEIVED).iter().enumerate().filter(|(_, received)| **received == 1);
+    let vertex = match arrived.nth(index / of_vertex) {
+        Some((vertex, _)) => format!("vertex {vertex}"),
+        None => "no vertex".to_owned(),
+    };
+    let number = index % of_vertex;
+    if harmonics {
+        return format!(
+            "{vertex}, {}, coefficient {}",
+            CHANNELS[number / COEFFICIENTS],
+            number % COEFFICIENTS
+        );
+    }
+    let (hemisphere, number) = (HEMISPHERES[number / of_hemisphere], number % of_hemisphere);
+    let (channel, coordinate) =
+        (CHANNELS[number / COORDINATES.len()], COORDINATES[number % COORDINATES.len()]);
+    format!("{vertex}, hemisphere {hemisphere}, {channel}, {coordinate}")
+}
+
 /// The first number in which two OUTs differ, in a line; `None` if they are the same.
 #[must_use]
 pub fn difference(test: &Test, expected: &[u8], found: &[u8]) -> Option<String> {
@@ -170,13 +209,14 @@ pub fn difference(test: &Test, expected: &[u8], found: &[u8]) -> Option<String> 
             let whole = u64::from_le_bytes(whole);
             match field.kind {
                 Kind::Whole => whole.to_string(),
-                Kind::F32 => format!("0x{whole:08X}"),
-                Kind::F64 => format!("0x{whole:016X}"),
+                Kind::F32 => format!("{:.6e} (0x{whole:08X})", f32::from_bits(whole as u32)),
+                Kind::F64 => format!("{:.6e} (0x{whole:016X})", f64::from_bits(whole)),
             }
         }
     };
     let name = match test.op {
         Op::Prefixes => format!("after {} bytes: {}", index / 2, ["exit status", "records"][index % 2]),
+        _ if field.name == VALUES => format!("{VALUES}[{index}], {}", value_name(&fields, expected, index)),
         _ if field.count == 1 => field.name.clone(),
         _ => format!("{}[{index}]", field.name),
     };

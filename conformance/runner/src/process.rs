@@ -1,7 +1,7 @@
 //! Starts a program, waits for it no longer than it may take, and keeps what it printed.
 
 use std::io::Read;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -39,6 +39,9 @@ pub fn run(words: &[String], limit: Duration) -> Outcome {
     let Some((program, arguments)) = words.split_first() else { return not_started("no command".to_owned()) };
     let mut command = Command::new(program);
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    // So that those that a script starts can be ended with it.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
     let mut child = match command.spawn() {
         Ok(child) => child,
         Err(error) => return not_started(error.to_string()),
@@ -58,9 +61,7 @@ pub fn run(words: &[String], limit: Duration) -> Outcome {
                 pause = (pause * 2).min(Duration::from_millis(10));
             }
             waiting => {
-                // It may have ended in between, which is no harm.
-                let _ = child.kill();
-                let _ = child.wait();
+                end_all(&mut child);
                 break if waiting.is_ok() { End::Hung } else { End::NotStarted };
             }
         }
@@ -71,6 +72,17 @@ pub fn run(words: &[String], limit: Duration) -> Outcome {
         _ => String::new(),
     };
     Outcome { stdout: text(stdout), stderr: text(stderr), end }
+}
+
+/// Kills a program and those that it started. They may have ended in between, which is no harm.
+fn end_all(child: &mut Child) {
+    #[cfg(unix)]
+    let _ = rustix::process::kill_process_group(
+        rustix::process::Pid::from_child(child),
+        rustix::process::Signal::KILL,
+    );
+    let _ = child.kill();
+    let _ = child.wait();
 }
 
 #[cfg(unix)]

@@ -4,6 +4,7 @@ use crate::manifest::Suite;
 use crate::run::{Answer, Results, Status};
 use crate::words;
 use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// The last line: `N passed, N failed`, and what was not run.
@@ -24,14 +25,17 @@ pub fn summary(results: &Results) -> String {
 const LISTED: usize = 40;
 /// Lines of standard error that are shown of a failed test.
 const COMPLAINTS: usize = 3;
+/// Clauses that are named of those of which every test failed.
+const CLAUSES: usize = 12;
 
 /// What is printed, without the [`summary`].
 #[must_use]
-pub fn text(results: &Results) -> String {
+pub fn text(suite: &Suite, results: &Results) -> String {
     let mut text = String::new();
     let failed: Vec<&Answer> =
         results.answers.iter().filter(|answer| answer.status == Status::Failed).collect();
-    for answer in failed.iter().take(LISTED) {
+    let listed = telling(&failed);
+    for answer in &listed {
         text += &format!("FAILED {}: {}\n", answer.id, answer.detail);
         for line in answer.stderr.lines().take(COMPLAINTS) {
             text += &format!("    | {line}\n");
@@ -40,11 +44,52 @@ pub fn text(results: &Results) -> String {
     if failed.len() > LISTED {
         text += &format!("and {} more; --json FILE lists all\n", failed.len() - LISTED);
     }
-    if let Some(first) = failed.first() {
+    let broken = broken(suite, &results.answers);
+    if !broken.is_empty() {
+        let more = broken.len().saturating_sub(CLAUSES);
+        let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+        let named = broken[..broken.len().min(CLAUSES)].join(", ");
+        text += &format!("every test of these clauses failed: {named}{more}\n");
+    }
+    if let Some(first) = listed.first() {
         text += &format!("what is in a test, and why: explain {}\n", first.id);
     }
     text += &format!("{}, in {:.1} s\n", results.decoder, results.took.as_secs_f64());
     text
+}
+
+/// As many failed tests as are listed: those first that are about another clause than the ones before, in the order of the suite.
+fn telling<'a>(failed: &[&'a Answer]) -> Vec<&'a Answer> {
+    let mut clauses = BTreeSet::new();
+    let (mut chosen, mut others) = (Vec::new(), Vec::new());
+    for (number, answer) in failed.iter().enumerate() {
+        let known = clauses.len();
+        clauses.extend(&answer.clauses);
+        let into = if clauses.len() > known { &mut chosen } else { &mut others };
+        into.push(number);
+    }
+    chosen.append(&mut others);
+    chosen.truncate(LISTED);
+    chosen.sort_unstable();
+    chosen.into_iter().map(|number| failed[number]).collect()
+}
+
+/// The clauses of which a test failed and none passed, those with the most failed tests first.
+fn broken<'a>(suite: &'a Suite, answers: &[Answer]) -> Vec<&'a str> {
+    let (mut failed, mut passed) = (BTreeMap::<&str, usize>::new(), BTreeSet::new());
+    for answer in answers {
+        for clause in suite.test(&answer.id).into_iter().flat_map(|test| &test.clauses) {
+            match answer.status {
+                Status::Failed => *failed.entry(clause).or_default() += 1,
+                Status::Passed => drop(passed.insert(clause.as_str())),
+                Status::NotClaimed | Status::Skipped => {}
+            }
+        }
+    }
+    let mut broken: Vec<(&str, usize)> =
+        failed.into_iter().filter(|(clause, _)| !passed.contains(clause)).collect();
+    broken.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(b.0)));
+    broken.into_iter().map(|(clause, _)| clause).collect()
 }
 
 /// The tests that fit a pattern: id, kind, verdict and code, what it shows; with tabs between.
@@ -97,7 +142,10 @@ pub fn junit(results: &Results) -> String {
         let name = escaped(&answer.id);
         let inner = match answer.status {
             Status::Passed => String::new(),
-            Status::Failed => format!("<failure message=\"{}\"/>", escaped(&answer.detail)),
+            Status::Failed => {
+                let about = [&[answer.why.clone()][..], &answer.clauses].concat().join("; ");
+                format!("<failure message=\"{}\">{}</failure>", escaped(&answer.detail), escaped(&about))
+            }
             Status::NotClaimed => "<skipped message=\"not claimed\"/>".to_owned(),
             Status::Skipped => "<skipped/>".to_owned(),
         };

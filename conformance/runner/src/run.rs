@@ -66,6 +66,12 @@ pub struct Answer {
     /// For a failed test, in what it differs.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub detail: String,
+    /// What a failed test shows.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub why: String,
+    /// The clauses that a failed test is about.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub clauses: Vec<String>,
     /// The beginning of what it printed on standard error.
     #[serde(skip)]
     pub stderr: String,
@@ -162,8 +168,12 @@ impl Session<'_> {
             expected: String::new(),
             found: String::new(),
             detail: String::new(),
+            why: String::new(),
+            clauses: Vec::new(),
             stderr: String::new(),
         };
+        let failed =
+            || Answer { why: test.why.clone(), clauses: test.clauses.clone(), ..bare(Status::Failed) };
         if self.options.skip.iter().any(|pattern| words::fits(pattern, &test.id)) {
             return bare(Status::Skipped);
         }
@@ -177,16 +187,18 @@ impl Session<'_> {
         };
         if self.hangs.load(Ordering::Relaxed) >= HANGS {
             let detail = format!("not started: the decoder gave no answer {HANGS} times");
-            return Answer { expected, detail, ..bare(Status::Failed) };
+            return Answer { expected, detail, ..failed() };
         }
         let outcome = self.start(test, out);
         if outcome.end == End::Hung {
             self.hangs.fetch_add(1, Ordering::Relaxed);
         }
         let (found, verdict, printed) = seen(&outcome);
+        let shown = matches!(verdict, Some(Verdict::Ok | Verdict::NeedMore));
         let detail = match verdict {
             None => found.clone(),
             Some(verdict) if !verdicts.contains(&verdict) => format!("expected {expected}, found {found}"),
+            Some(_) if shown && !out.exists() => "OUT was not written".to_owned(),
             // Another verdict that is right too has no code of ours, and another state.
             Some(verdict) if verdict != test.verdict => String::new(),
             Some(_) => match code {
@@ -200,8 +212,8 @@ impl Session<'_> {
                 _ => String::new(),
             },
         };
-        let status = if detail.is_empty() { Status::Passed } else { Status::Failed };
-        Answer { expected, found, detail, stderr: outcome.stderr, ..bare(status) }
+        let base = if detail.is_empty() { bare(Status::Passed) } else { failed() };
+        Answer { expected, found, detail, stderr: outcome.stderr, ..base }
     }
 
     fn start(&self, test: &Test, out: &Path) -> Outcome {
@@ -215,7 +227,7 @@ impl Session<'_> {
     /// In what OUT differs; nothing if it does not.
     fn compare(&self, test: &Test, out: &Path) -> Result<String, String> {
         let Some(expected) = &test.out else { return Ok(String::new()) };
-        let file = File::open(out).map_err(|_| "OUT was not written".to_owned())?;
+        let file = File::open(out).map_err(|error| format!("OUT: {error}"))?;
         if expected.form == Form::Rows {
             let rows =
                 self.suite.read(&expected.file).map_err(|error| format!("{}: {error}", expected.file))?;

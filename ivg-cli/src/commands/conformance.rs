@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &ConformanceArguments) -> Result<ExitCode, Failure>
             let mut results = run_suite(&suite, &options).map_err(Failure::new)?;
             results.answers.retain(|answer| answer.id == *id);
             files::print("\n")?;
-            finish(&results)
+            finish(suite, &results)
         }
     }
 }
@@ -53,12 +53,12 @@ fn run_all(suite: &Suite, arguments: &RunArguments) -> Result<ExitCode, Failure>
     };
     write(arguments.json.as_deref(), report::json)?;
     write(arguments.junit.as_deref(), report::junit)?;
-    finish(&results)
+    finish(suite, &results)
 }
 
 /// Prints how it went.
-fn finish(results: &Results) -> Result<ExitCode, Failure> {
-    files::print(&report::text(results))?;
+fn finish(suite: &Suite, results: &Results) -> Result<ExitCode, Failure> {
+    files::print(&report::text(suite, results))?;
     files::print(&format!("{}\n", report::summary(results)))?;
     Ok(if results.count(Status::Failed) == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

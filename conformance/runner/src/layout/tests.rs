@@ -30,13 +30,20 @@ fn the_first_number_that_differs_is_named() {
     assert_eq!(difference(&ivg, &grid, &grid), None);
     let cases = [
         (8, "dims[2] (byte 8): expected 2, found 3"),
-        (12, "origin[0] (byte 12): expected 0x3FE0000000000000, found 0x3FE0000000000001"),
+        (
+            12,
+            "origin[0] (byte 12): expected 5.000000e-1 (0x3FE0000000000000), found 5.000000e-1 (0x3FE0000000000001)",
+        ),
         (64, "quantity (byte 64): expected 1, found 0"),
         (76, "bytes of the name"),
         (81, "light 0, name[1] (byte 81): expected 98, found 99"),
         (87, "received[1] (byte 87): expected 0, found 1"),
         (89, "validity[1] (byte 89): expected 255, found 254"),
-        (97, "values[1] (byte 96): expected 0x3F800000, found 0x3F800100"),
+        (
+            97,
+            "values[1], vertex 0, R, coefficient 1 (byte 96): expected 1.000000e0 (0x3F800000), found 1.000031e0 (0x3F800100)",
+        ),
+        (196, "values[26], vertex 0, B, coefficient 8 (byte 196)"),
     ];
     for (at, expected) in cases {
         let mut other = grid.clone();
@@ -46,6 +53,26 @@ fn the_first_number_that_differs_is_named() {
     }
     let short = difference(&ivg, &grid, &grid[..grid.len() - 4]).unwrap();
     assert_eq!(short, "OUT has 196 bytes, expected 200; the same up to there");
+}
+
+/// A grid of irradiance vectors, whose first vertex has not arrived.
+#[test]
+fn values_are_named_by_vertex_hemisphere_channel_and_coordinate() {
+    let mut grid = grid();
+    grid[64] = 0;
+    grid[86..88].copy_from_slice(&[0, 1]);
+    grid.extend(words(&[0xBF80_0000; 27]));
+    for (number, name) in [
+        (0, "values[0], vertex 1, hemisphere +x, R, x ("),
+        (17, "values[17], vertex 1, hemisphere -x, B, z ("),
+        (31, "values[31], vertex 1, hemisphere -y, G, y ("),
+        (53, "values[53], vertex 1, hemisphere -z, B, z ("),
+    ] {
+        let mut other = grid.clone();
+        other[92 + 4 * number] ^= 1;
+        let found = difference(&test("decode", "ivg"), &grid, &other).unwrap();
+        assert!(found.starts_with(name), "{found}");
+    }
 }
 
 #[test]
