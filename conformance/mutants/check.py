@@ -67,6 +67,8 @@ def main():
         if passed or not mutant["killed_by"]:
             alive += 1
             print("alive: %s (%s): %s" % (mutant["name"], mutant["why"], ", ".join(passed) or "no test named"))
+        else:
+            print("killed: %s by %s" % (mutant["name"], ", ".join(mutant["killed_by"])))
     print("%d killed, %d alive" % (len(mutants) - alive, alive))
     return 1 if alive or not mutants else 0
 

@@ -8,17 +8,23 @@ use std::process::Command;
 /// The folder that the archive unpacks into.
 pub const FOLDER: &str = "ivg-conformance";
 
-/// What goes into the archive: paths from the root of the repository, and what they are called there. A folder is taken whole.
-const PARTS: [(&str, &str); 9] = [
-    ("conformance/ARCHIVE.md", "README.md"),
-    ("conformance/LICENSE", "LICENSE"),
-    ("conformance/PROTOCOL.md", "PROTOCOL.md"),
-    ("conformance/adapters/", "adapters/"),
-    ("conformance/manifest.schema.json", "manifest.schema.json"),
-    ("conformance/ports/", "ports/"),
-    ("conformance/run.py", "run.py"),
-    ("conformance/vectors/", "vectors/"),
-    ("spec/", "spec/"),
+/// The page that one reads first.
+const PAGE: &str = "conformance/ARCHIVE.md";
+
+/// What else goes into the archive: paths from the root of the repository, which are the same there, so that what one document says
+/// of another is true. A folder is taken whole.
+const PARTS: [&str; 11] = [
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "conformance/LICENSE",
+    "conformance/PROTOCOL.md",
+    "conformance/README.md",
+    "conformance/adapters/",
+    "conformance/manifest.schema.json",
+    "conformance/ports/",
+    "conformance/run.py",
+    "conformance/vectors/",
+    "spec/",
 ];
 
 /// The files of the archive, by name: those that git knows.
@@ -28,15 +34,14 @@ const PARTS: [(&str, &str); 9] = [
 /// git cannot list them; one of them cannot be read.
 pub fn files(root: &Path) -> io::Result<Vec<(String, Vec<u8>)>> {
     let listed =
-        Command::new("git").arg("-C").arg(root).args(["ls-files", "-z", "conformance", "spec"]).output()?;
+        Command::new("git").arg("-C").arg(root).args(["ls-files", "-z", PAGE]).args(PARTS).output()?;
     if !listed.status.success() {
         return Err(io::Error::other(String::from_utf8_lossy(&listed.stderr).into_owned()));
     }
     let mut files = Vec::new();
     for path in String::from_utf8_lossy(&listed.stdout).split_terminator('\0') {
-        let Some((part, name)) = PARTS.iter().find(|(part, _)| path.starts_with(part)) else { continue };
-        let name = format!("{FOLDER}/{name}{}", &path[part.len()..]);
-        files.push((name, std::fs::read(root.join(path))?));
+        let name = if path == PAGE { "README.md" } else { path };
+        files.push((format!("{FOLDER}/{name}"), std::fs::read(root.join(path))?));
     }
     files.sort();
     Ok(files)

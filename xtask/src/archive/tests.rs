@@ -25,8 +25,8 @@ fn the_archive_unpacks_to_the_suite() {
     for (name, bytes) in &files {
         assert_eq!(std::fs::read(folder.path().join(name)).unwrap(), *bytes, "{name}");
     }
-    let listed = python(&["ivg-conformance/run.py", "list", "--only", "numeric"]);
+    let listed = python(&["ivg-conformance/conformance/run.py", "list", "--only", "numeric"]);
     assert_eq!(listed.lines().count(), 4, "{listed}");
-    let explained = python(&["ivg-conformance/run.py", "explain", "ivg/x-303-step-zero"]);
+    let explained = python(&["ivg-conformance/conformance/run.py", "explain", "ivg/x-303-step-zero"]);
     assert!(explained.contains("header.step") && explained.contains("**IVG-LAT-03**"), "{explained}");
 }
