@@ -208,22 +208,38 @@ impl Accumulator {
         Ok(())
     }
 
-    /// Whether two accumulators belong to the same bake.
-    fn check_same(&self, other: &Self) -> Result<(), AccumulatorError> {
+    /// Whether two accumulators belong to the same bake, whatever photons they have.
+    ///
+    /// # Errors
+    ///
+    /// An [`AccumulatorError`] that names the first of these that differs: release, seed, grid, what is stored, reflections,
+    /// lights, scene.
+    pub fn check_same(&self, other: &Self) -> Result<(), AccumulatorError> {
         let (a, b) = (&self.head, &other.head);
         if a.release != b.release {
             return Err(AccumulatorError::Release);
         }
-        if a.scene != b.scene {
-            return Err(AccumulatorError::Scene);
-        }
         if a.seed != b.seed {
             return Err(AccumulatorError::Seed { seeds: [a.seed, b.seed] });
         }
-        let alike = (a.quantity, a.dims, a.max_bounces) == (b.quantity, b.dims, b.max_bounces);
+        // The scene's number depends on these too, but does not tell which it is.
+        let fields: [(&'static str, fn(&Head) -> String); 6] = [
+            ("numbers of vertices", |h| h.dims.map(|count| count.to_string()).join("x")),
+            ("quantities", |h| h.quantity.name().to_owned()),
+            ("first vertices [m]", |h| format!("{:?}", h.first)),
+            ("last vertices [m]", |h| format!("{:?}", h.last)),
+            ("numbers of reflections", |h| h.max_bounces.to_string()),
+            ("powers of the lights [W]", |h| h.power.to_string()),
+        ];
+        for (what, text) in fields {
+            let values = [text(a), text(b)];
+            if values[0] != values[1] {
+                return Err(AccumulatorError::Differs { what, values: Box::new(values) });
+            }
+        }
         let same_bits = |x: [f64; 4], y: [f64; 4]| x.map(f64::to_bits) == y.map(f64::to_bits);
         let [x, y] = [a, b].map(|h| [h.power, h.per_area, h.quantum, h.volume]);
-        if !alike || !same_bits(x, y) || self.vertices != other.vertices {
+        if a.scene != b.scene || !same_bits(x, y) || self.vertices != other.vertices {
             return Err(AccumulatorError::Scene);
         }
         Ok(())

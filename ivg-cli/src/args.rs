@@ -136,13 +136,15 @@ pub(crate) struct BakeArguments {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) bake: BakeSettings,
-    /// Trace only part K of N of the photons, and write their sums for ivg merge: the output is an accumulator file (.acc).
+    /// Trace only part K of N of the photons, and write their sums for ivg merge: the output is an accumulator file (.acc). With the
+    /// estimator track-length.
     #[arg(long, value_name = "K/N", conflicts_with_all = ["accuracy", "time", "checkpoint", "resume"])]
     pub(crate) shard: Option<ShardArgument>,
-    /// Write the sums to this accumulator file now and then, and at the end. Not with --accuracy.
+    /// Write the sums to this accumulator file every minute, and at the end. Not with --accuracy; with the estimator track-length.
     #[arg(long, value_name = "FILE.acc")]
     pub(crate) checkpoint: Option<PathBuf>,
-    /// Go on from this accumulator file, up to --photons; the file may be that of --checkpoint. Not with --accuracy.
+    /// Go on from this accumulator file, up to --photons, with as many reflections as it has; the file may be that of --checkpoint.
+    /// Not with --accuracy.
     #[arg(long, value_name = "FILE.acc")]
     pub(crate) resume: Option<PathBuf>,
     /// Print figures as JSON.
@@ -245,7 +247,8 @@ pub(crate) struct RenderArguments {
     /// Size of the picture, in pixels.
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     pub(crate) size: PictureSize,
-    /// Brightness: factor on radiance before the tone curve [default: from the scene].
+    /// Brightness: factor on radiance before the tone curve [default: from the picture; to compare pictures, give
+    /// all the same].
     #[arg(long, value_name = "FACTOR", value_parser = crate::scene_args::positive)]
     pub(crate) exposure: Option<f32>,
     /// Packed scenes: take of each mesh the coarsest level that is off by at most so many pixels, by the errors stored in its

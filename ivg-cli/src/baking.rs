@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use ivg_bake::{
-    Accumulator, AccuracyReport, BakeOptions, BakeResult, BakeStats, Estimator, PilotReport,
+    Accumulator, AccuracyReport, BakeError, BakeOptions, BakeResult, BakeStats, Estimator, PilotReport,
     ResolutionLimits, Shard,
 };
 use ivg_format::{EncodeOptions, Encoding, GridSource, Order, Quantity};
@@ -164,6 +164,10 @@ fn simulate(
     }
     ivg_bake::measure_reflections(scene, flat, plan, options).map_err(Failure::new)?;
     let from = files.resume.map(read_sums).transpose()?;
+    if let Some(from) = &from {
+        // How far light is worth following is measured with a part of the photons, and may be another number for more of them.
+        plan.max_bounces = from.seed_and_bounces().1;
+    }
     let mut written = Instant::now();
     let mut failure = None;
     let mut save = |sums: &Accumulator| {
@@ -175,7 +179,10 @@ fn simulate(
         }
     };
     let sums = ivg_bake::accumulate(scene, flat, plan, options, (Shard::ALL, from), watch, &mut save);
-    let mut sums = sums.map_err(Failure::new)?;
+    let mut sums = sums.map_err(|error| match (files.resume, error) {
+        (Some(path), error @ BakeError::Accumulator(_)) => Failure::file(path, error),
+        (_, error) => Failure::new(error),
+    })?;
     if let Some(failure) = failure {
         return Err(failure);
     }

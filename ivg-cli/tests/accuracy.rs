@@ -105,6 +105,33 @@ fn shards_merge_and_checkpoints_resume_to_the_same_bytes() {
     }
     let output = place.run(&["bake", "room.obj", "-o", "x.acc", "--shard", "4/3"]);
     assert_eq!(output.status.code(), Some(2));
+    more(&["-o", "seed.acc", "--shard", "2/3", "--photons", "9000", "--encoding", "sh2-28", "--seed", "2"]);
+    let seeds = "seed.acc: does not belong to 1.acc: the accumulators have different seeds: 1 and 2";
+    fails(&["merge", "1.acc", "seed.acc", "3.acc", "-o", "x.ivg"], seeds);
+    let resumed =
+        |grid: &'static str| ["bake", "room.obj", "--grid", grid, "-o", "y.ivg", "--resume", "x.acc"];
+    fails(&resumed("4x4x4"), "x.acc: the accumulators have different quantities: ");
+    fails(&resumed("5x4x4"), "x.acc: the accumulators have different numbers of vertices: 5x4x4 and 4x4x4");
+}
+
+/// Photons that find another number of reflections in the room than 5000 do.
+const MORE_PHOTONS: &str = "400000";
+
+/// More photons measure how far light is worth following better, and may find another number of reflections.
+#[test]
+fn a_bake_that_is_gone_on_with_keeps_its_reflections() {
+    let place = Workplace::with_room();
+    let bounces = |photons: &str, rest: &[&str]| {
+        let bake = ["bake", "room.obj", "--grid", "4x4x4", "-o", "x.ivg", "--json", "--photons", photons];
+        json(&place.ok(&[&bake[..], rest].concat()))["bounces"].as_u64()
+    };
+    let few = bounces("5000", &["--checkpoint", "x.acc"]);
+    assert_ne!(
+        bounces(MORE_PHOTONS, &[]),
+        few,
+        "or this test shows nothing: choose another number of photons"
+    );
+    assert_eq!(bounces(MORE_PHOTONS, &["--resume", "x.acc"]), few);
 }
 
 #[test]

@@ -14,7 +14,8 @@ const UNPACKED: &str = "target/conformance-archive";
 /// What the archive promises to someone who has a decoder: from the file to the report \[s\].
 const FIVE_MINUTES: f64 = 300.0;
 /// The lines of the archive's first page that its reader types; a test compares.
-const COMPILE: (&str, &str) = ("cc", "-std=c99 -O2 -Iconformance/ports/c conformance/adapters/c/adapter.c -o adapter -lm");
+const COMPILE: (&str, &str) =
+    ("cc", "-std=c99 -O2 -Iconformance/ports/c conformance/adapters/c/adapter.c -o adapter -lm");
 const RUN: (&str, &str) = ("python3", "conformance/run.py run --decoder ./adapter");
 
 /// What the step does, in order.

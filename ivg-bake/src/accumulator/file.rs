@@ -54,8 +54,16 @@ pub enum AccumulatorError {
     /// Made by another release, or for another kind of machine.
     #[error("the accumulators were made by different releases, or for different kinds of machines")]
     Release,
-    /// Of another scene, lights file, grid, encoding or effect plan.
-    #[error("the accumulators are of different scenes, lights, grids, quantities or effects")]
+    /// A field of the header differs.
+    #[error("the accumulators have different {what}: {} and {}", .values[0], .values[1])]
+    Differs {
+        /// Which.
+        what: &'static str,
+        /// Both.
+        values: Box<[String; 2]>,
+    },
+    /// Of another scene, lights file or effect plan, which the header holds as one number.
+    #[error("the accumulators are of different scenes, lights or effects")]
     Scene,
     /// Of another seed.
     #[error("the accumulators have different seeds: {} and {}", .seeds[0], .seeds[1])]

@@ -1,6 +1,6 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use ivg_grid::Quantity;
 use ivg_scene::{FlatScene, Scene};
 
@@ -92,10 +92,17 @@ fn what_does_not_belong_together_is_refused_by_name() {
     let refused = |other: Accumulator| Accumulator::merge(vec![first.clone(), other]).unwrap_err();
     let two = Shard { index: 2, count: 2 };
     assert_eq!(refused(part(&room(0.6), &small, two)), AccumulatorError::Scene);
-    assert_eq!(
-        refused(part(&scene, &BakeOptions { dims: [5; 3], ..small.clone() }, two)),
-        AccumulatorError::Scene
-    );
+    let differs = |options: &BakeOptions, bounces| {
+        let plan = plan(&scene.0, bounces);
+        let other = accumulate(&scene.0, &scene.1, &plan, options, (two, None), &Silent, &mut |_| {});
+        refused(other.unwrap()).to_string()
+    };
+    let grid = differs(&BakeOptions { dims: [5; 3], ..small.clone() }, 8);
+    assert!(grid.contains("different numbers of vertices: ") && grid.ends_with(" and 5x5x5"), "{grid}");
+    let reflections = differs(&small, 7);
+    assert!(reflections.ends_with("different numbers of reflections: 8 and 7"), "{reflections}");
+    let bounds = BakeOptions { bounds: Some((DVec3::splat(0.25), DVec3::splat(0.75))), ..small.clone() };
+    assert!(differs(&bounds, 8).contains("different first vertices [m]: "), "{}", differs(&bounds, 8));
     let seeded = part(&scene, &BakeOptions { seed: 9, ..small.clone() }, two);
     assert_eq!(refused(seeded), AccumulatorError::Seed { seeds: [1, 9] });
     let longer = part(&scene, &BakeOptions { photons: 20_000, ..small.clone() }, two);

@@ -36,6 +36,9 @@ pub(crate) fn run(arguments: &BakeArguments) -> Result<ExitCode, Failure> {
         ));
     }
     files::require_extension(&arguments.out, &["ivg"])?;
+    if let Some(path) = sums.checkpoint {
+        files::require_extension(path, &["acc"])?;
+    }
     let loaded = LoadedScene::open(&arguments.scene)?;
     let baked = baking::bake_with(&loaded, &arguments.bake, sums)?;
     files::write(&arguments.out, &baked.file)?;

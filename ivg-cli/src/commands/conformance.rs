@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &ConformanceArguments) -> Result<ExitCode, Failure>
             let mut results = run_suite(&suite, &options).map_err(Failure::new)?;
             results.answers.retain(|answer| answer.id == *id);
             files::print("\n")?;
-            finish(suite, &results)
+            finish(&suite, &results)
         }
     }
 }

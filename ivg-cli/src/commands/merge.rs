@@ -13,6 +13,12 @@ pub(crate) fn run(arguments: &MergeArguments) -> Result<ExitCode, Failure> {
     let parts =
         arguments.files.iter().map(|path| baking::read_sums(path)).collect::<Result<Vec<_>, Failure>>()?;
     let shards = parts.len();
+    for (part, path) in parts.iter().zip(&arguments.files).skip(1) {
+        let differs = |error| {
+            Failure::file(path, format_args!("does not belong to {}: {error}", arguments.files[0].display()))
+        };
+        parts[0].check_same(part).map_err(differs)?;
+    }
     let whole = Accumulator::merge(parts).map_err(Failure::new)?;
     let storage = &arguments.storage;
     let encoding = storage.encoding.unwrap_or(match whole.quantity() {
