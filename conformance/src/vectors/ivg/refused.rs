@@ -17,6 +17,7 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     list.extend(registries(twin("0008-small")));
     list.extend(values(twin("0008-small"), twin("0004-vectors"), twin("0005-validity")));
     list.extend(chunks(twin("0006-lights"), twin("0009-metadata")));
+    list.extend(lists(twin("0008-small")));
     list.extend(super::limits::refused(twin("0008-small"), twin("0009-metadata")));
     list.extend(super::forward::refused(twin("0008-small")));
     list.extend(variants::refused(
@@ -25,6 +26,7 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
         twin(variants::EXPLICIT_SMALL),
         twin("0008-small"),
     ));
+    list.extend(variants::directories_with_validity(twin(variants::EXPLICIT_VALIDITY)));
     list.into_iter().map(|refused| Vector::refused(Format::Ivg, refused)).collect()
 }
 
@@ -307,9 +309,60 @@ fn chunks(lights: &[u8], meta: &[u8]) -> Vec<Refused> {
         ),
         (m, "metadata", ivg::METADATA, edited(CHUNK_HEAD, b"G"), "a key with a capital letter"),
         (m, "metadata-line", ivg::METADATA, edited(CHUNK_HEAD + 21, b"!"), "the last line does not end"),
+        (m, "metadata-utf8", ivg::METADATA, edited(CHUNK_HEAD + 10, &[0xFF]), "a value that is not UTF-8"),
+        (m, "metadata-no-value", ivg::METADATA, edited(CHUNK_HEAD + 9, b"-"), "a line without ="),
         (l, "lights", ivg::LIGHTS, light(0, &[3]), "fewer lights than the list declares"),
         (l, "lights-more", ivg::LIGHTS, light(0, &[1]), "a light more than the list declares"),
         (l, "light-name", ivg::LIGHTS, light(8, &[0xFF]), "a name that is not UTF-8"),
+        (
+            l,
+            "light-name-length",
+            ivg::LIGHTS,
+            light(17, &[9]),
+            "a last name that goes a byte beyond the list",
+        ),
+        (
+            l,
+            "light-name-length-first",
+            ivg::LIGHTS,
+            light(6, &[20]),
+            "a first name that goes a byte beyond the list",
+        ),
         (l, "light-flags", wire::RESERVED, light(4, &[2]), "a reserved flag of a light"),
+        (l, "light-reserved", wire::RESERVED, light(5, &[1]), "the reserved byte of a light"),
+        (
+            l,
+            "lights-repeated",
+            wire::CHUNK_REPEATED,
+            with_chunk(lights, b"LITE", false, &[0; 4]),
+            "a second list of lights, which is empty",
+        ),
+    ]
+}
+
+/// Lists of lights that end too early, and a line without a key. What a reader finds behind them, if it goes on, is padding, which
+/// looks like lights without a name, and then the checksum, which has reserved bits.
+fn lists(small: &[u8]) -> Vec<Refused> {
+    let list = |mistake, code, kind, payload: &[u8], why| {
+        ("0008-small", mistake, code, with_chunk(small, kind, false, payload), why)
+    };
+    vec![
+        list("lights-none", ivg::LIGHTS, b"LITE", &[], "a list of lights without a count"),
+        list("lights-count-cut", ivg::LIGHTS, b"LITE", &[1, 0, 0], "a list that ends within the count"),
+        list(
+            "light-flags-cut",
+            ivg::LIGHTS,
+            b"LITE",
+            b"\x02\0\0\0\0\0\x03\0abc\0",
+            "a list that ends behind the flags of its last light",
+        ),
+        list(
+            "light-length-cut",
+            ivg::LIGHTS,
+            b"LITE",
+            &[3, 0, 0, 0, 0, 0],
+            "a list that ends before the length of its first name",
+        ),
+        list("metadata-key", ivg::METADATA, b"META", b"=conformance\n", "a key without a letter"),
     ]
 }

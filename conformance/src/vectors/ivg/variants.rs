@@ -14,13 +14,14 @@ pub(super) const OCTREE: &str = "0016-octree";
 /// Lists with numbers of two bytes.
 const EXPLICIT: &str = "0017-explicit";
 pub(super) const EXPLICIT_SMALL: &str = "0018-explicit-small";
+pub(super) const EXPLICIT_VALIDITY: &str = "0019-explicit-validity";
 
 const XYZ: &str = "0020-packed-xyz24";
 const HALF: &str = "0021-pair-f16";
 const HALF_PADDED: &str = "0022-pair-f16x4";
 const SINGLE: &str = "0023-pair-f32";
 
-/// The chunk `DIRE` of the small file: three entries, four bytes of padding.
+/// The chunk `DIRE` of either small file: three entries, four bytes of padding.
 const DIRECTORY: Range<usize> = at::END..at::END + 48;
 
 /// Harmonics of radiance that is never negative: a mean, and no more than half of it in every other coefficient.
@@ -110,7 +111,7 @@ pub(super) fn accepted() -> Vec<Vector> {
         (OCTREE, octree(), "the order octree; the last bundle is smaller"),
         (EXPLICIT, explicit(), "the order explicit, sh2-28; numbers of two bytes in the lists"),
         (EXPLICIT_SMALL, explicit_small(false), "the order explicit; for files to refuse to differ from"),
-        ("0019-explicit-validity", explicit_small(true), "a vertex inside geometry is in no bundle"),
+        (EXPLICIT_VALIDITY, explicit_small(true), "a vertex inside geometry is in no bundle"),
         (XYZ, directed(Encoding::PackedXyz24), "packed-xyz24"),
         (HALF, directed(Encoding::PairF16), "pair-f16"),
         (HALF_PADDED, directed(Encoding::PairF16x4), "pair-f16x4"),
@@ -248,11 +249,30 @@ fn directed_codes() -> Vec<Refused> {
     ]
 }
 
+/// A file whose directory says something else of bundle `n`, counted from 0.
+fn with_entry(file: &[u8], n: usize, vertices: u32, index_bytes: u32) -> Vec<u8> {
+    let bytes = [vertices.to_le_bytes(), index_bytes.to_le_bytes()].concat();
+    in_envelope(file, DIRECTORY, DIRECTORY.start + CHUNK_HEAD + 8 * n, &bytes)
+}
+
+/// With a validity section, vertices may be in no bundle: that their sum is not W does not tell what is wrong with an entry.
+pub(super) fn directories_with_validity(file: &[u8]) -> Vec<Refused> {
+    // Nine of ten vertices are in bundles of 2, 3 and 4.
+    let list = [
+        ("directory-empty-validity", with_entry(file, 0, 0, 0), "a bundle without vertices"),
+        (
+            "directory-share-validity",
+            in_header(file, at::VERTICES_PER_SLICE, &[1]),
+            "four vertices in a bundle that may have three",
+        ),
+        ("directory-sum-validity", with_entry(file, 0, 4, 4), "eleven vertices of ten"),
+    ];
+    list.map(|(mistake, bytes, why)| (EXPLICIT_VALIDITY, mistake, ivg::DIRECTORY_VERTICES, bytes, why))
+        .to_vec()
+}
+
 fn directories(file: &[u8]) -> Vec<Refused> {
-    let entry = |n: usize, vertices: u32, index_bytes: u32| {
-        let bytes = [vertices.to_le_bytes(), index_bytes.to_le_bytes()].concat();
-        in_envelope(file, DIRECTORY, DIRECTORY.start + CHUNK_HEAD + 8 * n, &bytes)
-    };
+    let entry = |n, vertices, index_bytes| with_entry(file, n, vertices, index_bytes);
     let header = |field: usize, bytes: &[u8]| in_header(file, field, bytes);
     let list = [
         (

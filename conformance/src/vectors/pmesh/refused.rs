@@ -27,7 +27,7 @@ pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     list.extend(directory(octahedron));
     list.extend(entries(twin(SEAM)));
     list.extend(names(twin(SEAM)));
-    list.extend(points(twin("0022-raw-q12"), twin("0027-raw-q12-plane")));
+    list.extend(points(twin("0022-raw-q12"), twin("0027-raw-q12-plane"), twin("0073-raw-greatest")));
     list.extend(numbers(octahedron, twin(SEAM), twin(ONE_PACKET)));
     list.extend(packets::collapses(octahedron, twin(ONE_PACKET)));
     list.extend(packets::faces(octahedron, twin(SEAM)));
@@ -145,6 +145,20 @@ fn entries(seam: &[u8]) -> Vec<Refused> {
     vec![
         vertices("entry-order-seams", 1, 3, "a packet without a vertex, with a wedge"),
         vertices("entry-base-seams", 0, 2, "a first packet without the whole base, with its wedges"),
+        (
+            SEAM,
+            "entry-missing-vertex",
+            mesh::DIRECTORY_COUNTS,
+            in_header(seam, at::VERTEX_COUNT, &[6]),
+            "fewer vertices than the header says",
+        ),
+        (
+            SEAM,
+            "entry-missing-wedge",
+            mesh::DIRECTORY_COUNTS,
+            in_header(seam, at::WEDGE_COUNT, &[9]),
+            "fewer wedges than the header says",
+        ),
     ]
 }
 
@@ -158,9 +172,12 @@ fn names(file: &[u8]) -> Vec<Refused> {
     let edited =
         |at: usize, byte: u8| in_envelope(file, chunk.clone(), chunk.start + CHUNK_HEAD + at, &[byte]);
     let twice = with_chunk(file, b"MTRL", false, b"");
+    // The first byte of padding becomes the last of the list.
+    let longer = in_envelope(file, chunk.clone(), chunk.start + 8, &[16]);
     vec![
         (SEAM, "name-length", mesh::MATERIAL_NAMES, edited(7, 9), "a name that goes beyond the chunk"),
         (SEAM, "name-utf8", mesh::MATERIAL_NAMES, edited(10, 0xFF), "a name that is not UTF-8"),
+        (SEAM, "name-left-over", mesh::MATERIAL_NAMES, longer, "a byte behind the last name"),
         (SEAM, "names-repeated", wire::CHUNK_REPEATED, twice, "names of materials twice"),
     ]
 }
@@ -212,7 +229,7 @@ fn numbers(file: &[u8], seam: &[u8], coloured: &[u8]) -> Vec<Refused> {
 }
 
 /// Points of a lattice: four u16 each.
-fn points(file: &[u8], plane: &[u8]) -> Vec<Refused> {
+fn points(file: &[u8], plane: &[u8], greatest: &[u8]) -> Vec<Refused> {
     let number = |file: &[u8], point: usize, at: usize, value: u16| {
         in_packet(file, 0, ARRAYS + 8 * point + 2 * at, &value.to_le_bytes())
     };
@@ -242,6 +259,13 @@ fn points(file: &[u8], plane: &[u8]) -> Vec<Refused> {
             mesh::POSITION,
             number(file, 0, 3, 1),
             "a fourth number that is not 0",
+        ),
+        (
+            "0073-raw-greatest",
+            "point-infinite",
+            mesh::POSITION,
+            number(greatest, 2, 1, 2),
+            "a point of the lattice whose coordinate is too great for binary32",
         ),
     ]
 }

@@ -244,6 +244,20 @@ pub(super) fn headers(file: &[u8]) -> Vec<Refused> {
         ),
         (
             o,
+            "bounds-max-nan",
+            mesh::BOUNDS,
+            edited(at::BOUNDS_MAX, &nan),
+            "a greatest coordinate that is no number",
+        ),
+        (
+            o,
+            "bounds-max-infinite",
+            mesh::BOUNDS,
+            edited(at::BOUNDS_MAX, &f32::INFINITY.to_le_bytes()),
+            "a greatest coordinate at infinity",
+        ),
+        (
+            o,
             "bounds-crossed",
             mesh::BOUNDS,
             edited(at::BOUNDS_MAX + 4, &(-2.0f32).to_le_bytes()),

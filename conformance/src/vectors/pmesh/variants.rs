@@ -104,6 +104,12 @@ fn raw_quantised() -> Vec<Variant> {
             raw(14),
             "points of a lattice beside attributes, whose arrays keep their alignment",
         ),
+        (
+            "0073-raw-greatest",
+            greatest(),
+            raw(10),
+            "positions up to the greatest number, as points: the last of an axis would lie beyond it",
+        ),
     ]);
     variants
 }
