@@ -49,10 +49,14 @@
 //!
 //!   It is what lies between vertices that is off, not their light: in the hotel's worst part at 34 × 7 × 42 the ratio is 0.85,
 //!   and 0.84 if every vertex is path traced ([`Estimator::Gather`]).
-//!   Steps of a tenth of a metre to a fifth keep the mean of rooms within 2 % and all parts within 10 %. The automatic resolution
-//!   ([`resolution()`]) is a little coarser; by three standard errors none of its parts is off by more than 10 %.
-//! * The outside of a closed room's wall is shown with light of the room: the vertices there are invalid, since no light reaches
-//!   them, and where no other is near, lookups take what has been filled in from within. No picture from inside the room shows it.
+//!   Steps of a tenth of a metre to a fifth keep the mean of rooms within 2 %, and the worst part within about 10 % (some parts hold so
+//!   few places that it is known to a few per cent only). The automatic resolution ([`resolution()`]) is a little coarser.
+//! * Where no light at all arrives, vertices are invalid, as inside of geometry, and lookups take what has been filled in from around:
+//!   the outside of a closed room's wall, and the inside of a closed room without any light beside a lit one, are shown with light of
+//!   the lit room.
+//! * Photons, and the lights that paths sample, are shared out by power alone. Where one closed room has lamps a hundred times as
+//!   strong as another's, few reach the dim one: it is noisy, and below a thousandth many of its vertices count as unlit. The error
+//!   that a bake reports is that of the whole grid.
 //!
 //! # Example
 //!
