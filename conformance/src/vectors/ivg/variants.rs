@@ -1,6 +1,6 @@
 //! Vectors of the encodings and orders beside `packed-oct24`, `vectors-f32` and `slices`.
 
-use super::super::edit::{DATA_OFFSET_AT, in_envelope, in_header, with_chunk};
+use super::super::edit::{DATA_OFFSET_AT, in_envelope, in_header, overwritten, with_chunk};
 use super::super::{Format, Refused, Vector};
 use super::{CHUNK_HEAD, RECORD_HEAD, at, lattice, light, range};
 use ivg_format::{
@@ -271,6 +271,14 @@ pub(super) fn directories_with_validity(file: &[u8]) -> Vec<Refused> {
         .to_vec()
 }
 
+/// A lattice of 48 million vertices, and a directory with a bundle of 46 million: 2.25 GB.
+fn with_large_bundle(file: &[u8]) -> Vec<u8> {
+    let vertices = 46_000_000;
+    let file = overwritten(file, at::DIMS, &[2u16, 400, 60_000].map(u16::to_le_bytes).concat());
+    let file = in_header(&file, at::VERTICES_PER_SLICE, &800u32.to_le_bytes());
+    with_entry(&file, 0, vertices, 7 * vertices)
+}
+
 fn directories(file: &[u8]) -> Vec<Refused> {
     let entry = |n, vertices, index_bytes| with_entry(file, n, vertices, index_bytes);
     let header = |field: usize, bytes: &[u8]| in_header(file, field, bytes);
@@ -313,6 +321,12 @@ fn directories(file: &[u8]) -> Vec<Refused> {
             ivg::DIRECTORY_VERTICES,
             entry(0, 1, 1),
             "a vertex is in no bundle, and none is invalid",
+        ),
+        (
+            "directory-record-huge",
+            ivg::RECORD_TOO_LARGE,
+            with_large_bundle(file),
+            "a bundle longer than a record may be",
         ),
         ("directory-index-short", ivg::DIRECTORY_INDEX, entry(2, 5, 4), "fewer index bytes than vertices"),
         (
