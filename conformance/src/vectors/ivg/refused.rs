@@ -12,6 +12,7 @@ use ivg_wire::codes as wire;
 pub(super) fn refused(accepted: &[Vector]) -> Vec<Vector> {
     let twin = |name: &str| &accepted.iter().find(|vector| vector.name == name).expect("a name").bytes[..];
     let mut list = container(twin("0008-small"), twin("0009-metadata"));
+    list.extend(newer(twin("0012-newer-minor")));
     list.extend(records(twin("0007-line"), twin("0008-small")));
     list.extend(lattices(twin("0008-small"), twin("0001-one-vertex")));
     list.extend(registries(twin("0008-small")));
@@ -92,6 +93,13 @@ fn container(small: &[u8], meta: &[u8]) -> Vec<Refused> {
         ),
         (
             s,
+            "data-beyond",
+            wire::DATA_OFFSET,
+            in_header(small, DATA_OFFSET_AT, &(small.len().next_multiple_of(8) as u64 + 8).to_le_bytes()),
+            "records begin behind the end of the file",
+        ),
+        (
+            s,
             "file-bytes",
             wire::FILE_BYTES,
             longer(FILE_BYTES_AT, 4),
@@ -104,6 +112,19 @@ fn container(small: &[u8], meta: &[u8]) -> Vec<Refused> {
             flipped(meta, at::END + CHUNK_HEAD),
             "a bit of a chunk's payload",
         ),
+    ]
+}
+
+/// Lengths of headers that no minor version may have.
+fn newer(file: &[u8]) -> Vec<Refused> {
+    let header_bytes = |mistake, value: u32, why| {
+        let file = in_header(file, HEADER_BYTES_AT, &value.to_le_bytes());
+        ("0012-newer-minor", mistake, wire::HEADER_BYTES, file, why)
+    };
+    vec![
+        header_bytes("header-bytes-unaligned", 148, "a header length that is no multiple of 8"),
+        header_bytes("header-bytes-short", 136, "a header shorter than that of the known version"),
+        header_bytes("header-bytes-maximum", 65_544, "a header longer than any may be"),
     ]
 }
 
@@ -261,6 +282,7 @@ fn values(small: &[u8], exact: &[u8], validity: &[u8]) -> Vec<Refused> {
     let number = |value: f32| {
         in_envelope(exact, numbers.clone(), numbers.start + RECORD_HEAD + 4, &value.to_le_bytes())
     };
+    let scaled = in_header(&number(f32::MAX), at::SCALE_EXPONENT, &[1]);
     let block = range(validity, RecordId::Validity(0));
     let edges = block.start + RECORD_HEAD + 27;
     let unused = in_envelope(validity, block.clone(), edges + 10, &[0x80]);
@@ -270,6 +292,13 @@ fn values(small: &[u8], exact: &[u8], validity: &[u8]) -> Vec<Refused> {
         (s, "direction", ivg::DIRECTION_CODE, forbidden, "a direction with the forbidden coordinate 4095"),
         (e, "nan", ivg::NOT_FINITE, number(f32::NAN), "a component that is no number"),
         (e, "infinite", ivg::NOT_FINITE, number(f32::NEG_INFINITY), "a component that is infinite"),
+        (
+            e,
+            "scaled-infinite",
+            ivg::NOT_FINITE,
+            scaled,
+            "a component that becomes infinite when it is scaled",
+        ),
         (v, "unused-bits", ivg::UNUSED_BITS, unused, "a bit behind the last blocked edge"),
         (v, "edge-outside", ivg::EDGE_OUTSIDE, outside, "a blocked edge that leads out of the lattice"),
     ]
@@ -292,7 +321,17 @@ fn chunks(lights: &[u8], meta: &[u8]) -> Vec<Refused> {
             "too few bytes for a chunk between the last one and the records",
         ),
         (m, "chunk-padding", wire::CHUNK_PADDING, edited(CHUNK_HEAD + 22, &[1]), "padding that is not zero"),
+        (
+            m,
+            "chunk-length-wraps",
+            wire::CHUNK_LENGTH,
+            edited(8, &[0xFF; 8]),
+            "a chunk of 2⁶⁴ - 1 bytes, which with its envelope are 19 in 64 bits",
+        ),
         (m, "chunk-flags", wire::RESERVED, edited(4, &[2]), "a reserved flag of a chunk"),
+        (m, "chunk-reserved", wire::RESERVED, edited(5, &[1]), "the first reserved byte of a chunk"),
+        (m, "chunk-reserved-second", wire::RESERVED, edited(6, &[1]), "the second reserved byte of a chunk"),
+        (m, "chunk-reserved-last", wire::RESERVED, edited(7, &[1]), "the last reserved byte of a chunk"),
         (
             m,
             "chunk-repeated",

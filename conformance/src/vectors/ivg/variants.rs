@@ -241,6 +241,13 @@ fn directed_codes() -> Vec<Refused> {
         ),
         (
             SINGLE,
+            "single-scaled",
+            ivg::PAIR_COLOUR,
+            in_header(&with_number(&single, 143, &f32(f32::MAX)), at::SCALE_EXPONENT, &[1]),
+            "a colour that becomes infinite when it is scaled",
+        ),
+        (
+            SINGLE,
             "single-long",
             ivg::PAIR_DIRECTION,
             with_number(&single, 144, &f32(1.0f32.next_up())),

@@ -142,9 +142,14 @@ fn entries(seam: &[u8]) -> Vec<Refused> {
     let vertices = |mistake, k, end: u32, why| {
         (SEAM, mistake, mesh::DIRECTORY_COUNTS, in_directory(seam, k, entry::END_VERTEX, end), why)
     };
+    let wedges = |mistake, end: u32, why| {
+        (SEAM, mistake, mesh::DIRECTORY_COUNTS, in_directory(seam, 1, entry::END_WEDGE, end), why)
+    };
     vec![
         vertices("entry-order-seams", 1, 3, "a packet without a vertex, with a wedge"),
         vertices("entry-base-seams", 0, 2, "a first packet without the whole base, with its wedges"),
+        wedges("entry-wedges-seams", 5, "a packet with a vertex, without a wedge"),
+        wedges("entry-wedges-fall", 4, "fewer wedges than before, and more again behind"),
         (
             SEAM,
             "entry-missing-vertex",

@@ -69,6 +69,22 @@ fn answers<'a>(twin: impl Fn(&str) -> &'a [u8]) -> Vec<Refused> {
             "more faces of the base than the directory says",
         ),
         other(
+            TRIANGLE,
+            "faces of the base",
+            &[1, 0, 1, 1],
+            "coded-face-twice-last",
+            mesh::FACE_VERTICES,
+            "a face of the base whose last two corners are one vertex",
+        ),
+        other(
+            TRIANGLE,
+            "faces of the base",
+            &[1, 0, 1, 0],
+            "coded-face-twice-ends",
+            mesh::FACE_VERTICES,
+            "a face of the base whose first and last corners are one vertex",
+        ),
+        other(
             CLOSED,
             "length of a run",
             &[14],
