@@ -90,6 +90,20 @@ struct Head {
     volume: f64,
 }
 
+impl Head {
+    /// What people can tell bakes apart by.
+    fn in_words(&self) -> [(&'static str, String); 6] {
+        [
+            ("numbers of vertices", self.dims.map(|count| count.to_string()).join("x")),
+            ("quantities", self.quantity.name().to_owned()),
+            ("first vertices [m]", format!("{:?}", self.first)),
+            ("last vertices [m]", format!("{:?}", self.last)),
+            ("numbers of reflections", self.max_bounces.to_string()),
+            ("powers of the lights [W]", self.power.to_string()),
+        ]
+    }
+}
+
 /// Traces the photons of a shard, or those that `from` still lacks, and gives `save` the sums now and then.
 ///
 /// The monitor can end it early: the sums can be resumed. A bake that is whole can be resumed with more photons.
@@ -223,18 +237,9 @@ impl Accumulator {
             return Err(AccumulatorError::Seed { seeds: [a.seed, b.seed] });
         }
         // The scene's number depends on these too, but does not tell which it is.
-        let fields: [(&'static str, fn(&Head) -> String); 6] = [
-            ("numbers of vertices", |h| h.dims.map(|count| count.to_string()).join("x")),
-            ("quantities", |h| h.quantity.name().to_owned()),
-            ("first vertices [m]", |h| format!("{:?}", h.first)),
-            ("last vertices [m]", |h| format!("{:?}", h.last)),
-            ("numbers of reflections", |h| h.max_bounces.to_string()),
-            ("powers of the lights [W]", |h| h.power.to_string()),
-        ];
-        for (what, text) in fields {
-            let values = [text(a), text(b)];
-            if values[0] != values[1] {
-                return Err(AccumulatorError::Differs { what, values: Box::new(values) });
+        for ((what, ours), (_, theirs)) in a.in_words().into_iter().zip(b.in_words()) {
+            if ours != theirs {
+                return Err(AccumulatorError::Differs { what, values: Box::new([ours, theirs]) });
             }
         }
         let same_bits = |x: [f64; 4], y: [f64; 4]| x.map(f64::to_bits) == y.map(f64::to_bits);
