@@ -379,8 +379,8 @@ fn chunks(lights: &[u8], meta: &[u8]) -> Vec<Refused> {
     ]
 }
 
-/// Lists of lights that end too early, and a line without a key. What a reader finds behind them, if it goes on, is padding, which
-/// looks like lights without a name, and then the checksum, which has reserved bits.
+/// Lists of lights that end too early, and a line without a key. What a reader finds behind them, if it goes on, is padding,
+/// which looks like lights without a name, and then the checksum, which has reserved bits.
 fn lists(small: &[u8]) -> Vec<Refused> {
     let list = |mistake, code, kind, payload: &[u8], why| {
         ("0008-small", mistake, code, with_chunk(small, kind, false, payload), why)
