@@ -36,7 +36,8 @@ COMPLAINTS = 3  # lines of standard error that are shown of a failed test
 KEPT = 64 << 10  # bytes that are kept of what a decoder prints
 CLAUSES = 12  # clauses that are named of those of which every test failed
 HEMISPHERES = ("+x", "-x", "+y", "-y", "+z", "-z")  # IVG-DEF-03
-CHANNELS, COORDINATES, COEFFICIENTS = 3, 3, 9
+CHANNELS, COORDINATES = "RGB", "xyz"
+COEFFICIENTS = 9  # of harmonics of a channel
 NEXT_CLAUSE = r"\n(?=\*\*[A-Z]+-[A-Z]+-[0-9]+\*\*|#)"
 
 
@@ -145,8 +146,8 @@ def start(words, limit):
     """How a program ended (a kind and a number or text), the beginnings of what it printed and complained of."""
     try:
         # In a session of its own, so that those that a script starts can be ended with it.
-        streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-        child = subprocess.Popen(words, start_new_session=True, **streams)
+        pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        child = subprocess.Popen(words, start_new_session=True, **pipes)
     except OSError as error:
         return ("not started", 0), "", str(error)
     kept = [b"", b""]
@@ -156,8 +157,8 @@ def start(words, limit):
             for block in iter(lambda: stream.read1(4096), b""):
                 kept[number] += block[: KEPT - len(kept[number])]
 
-    pairs = enumerate([child.stdout, child.stderr])
-    threads = [threading.Thread(target=keep, args=pair, daemon=True) for pair in pairs]
+    streams = enumerate([child.stdout, child.stderr])
+    threads = [threading.Thread(target=keep, args=pair, daemon=True) for pair in streams]
     for thread in threads:
         thread.start()
     try:
@@ -246,12 +247,11 @@ class Run:
         found, verdict, printed = seen(end, stdout)
         answer["found"] = found
         detail = ""
-        written = os.path.exists(out)
         if verdict is None:
             detail = found
         elif verdict not in verdicts:
             detail = "expected %s, found %s" % (expected, found)
-        elif verdict in ("ok", "need-more") and not written:
+        elif verdict in ("ok", "need-more") and not os.path.exists(out):
             detail = "OUT was not written"
         elif verdict == test["verdict"]:
             if code is not None and printed is None:
@@ -402,7 +402,8 @@ def difference(test, expected, found):
     at = next((n for n, (a, b) in enumerate(zip(expected, found)) if a != b), None)
     if at is None:
         return None if len(expected) == len(found) else lengths + "; the same up to there"
-    before = [field for field in fields(test, expected) if field[1] <= at]
+    all_fields = fields(test, expected)
+    before = [field for field in all_fields if field[1] <= at]
     if not before:
         return "byte %d differs; %s" % (at, lengths)
     name, begin, size, count, kind = before[-1]
@@ -422,7 +423,7 @@ def difference(test, expected, found):
     if test["op"] == "prefixes":
         name = "after %d bytes: %s" % (index // 2, ["exit status", "records"][index % 2])
     elif name == "values":
-        name = "values[%d], %s" % (index, value_name(expected, index))
+        name = "values[%d], %s" % (index, value_name(all_fields, expected, index))
     elif count != 1:
         name = "%s[%d]" % (name, index)
     also = "" if len(expected) == len(found) else "; " + lengths
@@ -436,20 +437,20 @@ def decimal(number):
     return "%se%d" % (digits, int(exponent)) if e else text.replace("nan", "NaN")
 
 
-def value_name(out, index):
+def value_name(all_fields, out, index):
     """Which number of which vertex a value of a grid is."""
-    walk = Walk(out)
-    grid(walk)
-    harmonics = walk.word(4 * 3 + 8 * 6 + 4) == 1
-    received = next(field for field in walk.fields if field[0] == "received")
-    each = CHANNELS * (COEFFICIENTS if harmonics else COORDINATES * len(HEMISPHERES))
-    arrived = [n for n in range(received[3]) if out[received[1] + n : received[1] + n + 1] == b"\1"]
+    held = {name: out[at : at + size * count] for name, at, size, count, _ in all_fields if name in ("quantity", "received")}
+    harmonics = held.get("quantity") == b"\1\0\0\0"
+    of_hemisphere = len(CHANNELS) * len(COORDINATES)
+    each = len(CHANNELS) * COEFFICIENTS if harmonics else len(HEMISPHERES) * of_hemisphere
+    arrived = [vertex for vertex, received in enumerate(held.get("received", b"")) if received == 1]
     vertex, number = divmod(index, each)
     vertex = "vertex %d" % arrived[vertex] if vertex < len(arrived) else "no vertex"
     if harmonics:
-        return "%s, %s, coefficient %d" % (vertex, "RGB"[number // COEFFICIENTS], number % COEFFICIENTS)
-    hemisphere, number = divmod(number, CHANNELS * COORDINATES)
-    return "%s, hemisphere %s, %s, %s" % (vertex, HEMISPHERES[hemisphere], "RGB"[number // 3], "xyz"[number % 3])
+        return "%s, %s, coefficient %d" % (vertex, CHANNELS[number // COEFFICIENTS], number % COEFFICIENTS)
+    hemisphere, number = divmod(number, of_hemisphere)
+    channel, coordinate = divmod(number, len(COORDINATES))
+    return "%s, hemisphere %s, %s, %s" % (vertex, HEMISPHERES[hemisphere], CHANNELS[channel], COORDINATES[coordinate])
 
 
 # ---- Commands ----
@@ -501,7 +502,8 @@ def broken(suite, answers):
 def show_run(suite, decoder, answers, took):
     count = counts(answers)
     failed = [(answer, stderr) for answer, stderr in answers if answer["status"] == "failed"]
-    for answer, stderr in telling(failed):
+    listed = telling(failed)
+    for answer, stderr in listed:
         print("FAILED %s: %s" % (answer["id"], answer["detail"]))
         for line in stderr.splitlines()[:COMPLAINTS]:
             print("    | " + line)
@@ -511,8 +513,8 @@ def show_run(suite, decoder, answers, took):
     if nothing_passed:
         more = ", and %d more" % (len(nothing_passed) - CLAUSES) if len(nothing_passed) > CLAUSES else ""
         print("every test of these clauses failed: %s%s" % (", ".join(nothing_passed[:CLAUSES]), more))
-    if failed:
-        print("what is in a test, and why: explain %s" % telling(failed)[0][0]["id"])
+    if listed:
+        print("what is in a test, and why: explain %s" % listed[0][0]["id"])
     print("%s, in %.1f s" % (decoder, took))
     line = "%d passed, %d failed" % (count["passed"], count["failed"])
     line += ", %d not claimed" % count["not-claimed"] if count["not-claimed"] else ""

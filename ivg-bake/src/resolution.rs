@@ -144,8 +144,8 @@ fn clamped(change: f64) -> f64 {
 
 /// A grid for a scene. The step is an eighth of the distance that light flies between surfaces (the median, measured with
 /// 4096 photons), made smaller or larger along each axis, from half to twice, so that light changes by 7 % from a vertex to the next:
-/// that is measured on a coarse grid of 16 vertices along the longest axis and 8 or more along the others, with two bakes of 65,536 photons, whose noise is
-/// independent and drops out of products. An axis has 4 to 128 vertices, and all steps grow until the limits are met.
+/// that is measured on a coarse grid of 16 vertices along the longest axis and 8 or more along the others, with two bakes of 65,536
+/// photons, whose noise is independent and drops out of products. An axis has 4 to 128 vertices, and all steps grow until the limits are met.
 /// Depends on scene, plan, limits, and on bounds and seed of the options alone.
 ///
 /// # Errors
@@ -206,7 +206,7 @@ pub fn resolution(
 fn trial_dims(extent: DVec3) -> [u16; 3] {
     let mut dims = dims_for(DVec3::ZERO, extent, TRIAL_LONGEST);
     for (axis, count) in dims.iter_mut().enumerate() {
-        if extent[axis] > FLAT_SHARE * extent.max_element() {
+        if !is_flat(extent, axis) {
             *count = (*count).max(TRIAL_FEWEST);
         }
     }
@@ -236,9 +236,8 @@ impl Steps {
     }
 
     fn dims(&self, steps: [f64; 3]) -> [u16; 3] {
-        let longest = self.extent.max_element();
         core::array::from_fn(|axis| {
-            if self.extent[axis] <= FLAT_SHARE * longest {
+            if is_flat(self.extent, axis) {
                 return 2;
             }
             self.wanted(axis, steps[axis]).clamp(f64::from(ALONG.0), f64::from(ALONG.1)) as u16
@@ -248,6 +247,10 @@ impl Steps {
 
 /// Extents below this share of the longest one count as none, as automatic bounds take them.
 const FLAT_SHARE: f64 = 1e-3;
+
+fn is_flat(extent: DVec3, axis: usize) -> bool {
+    extent[axis] <= FLAT_SHARE * extent.max_element()
+}
 
 /// The median of the lengths of flights between surfaces \[m\]; 0 without any.
 fn middle_flight(ready: &Ready<'_>, seed: u64, bounces: u32) -> Result<f64, BakeError> {

@@ -162,11 +162,11 @@ fn simulate(
     if files.resume.is_none() && files.checkpoint.is_none() {
         return ivg_bake::bake_measured(scene, flat, plan, options, watch).map_err(Failure::new);
     }
-    ivg_bake::measure_reflections(scene, flat, plan, options).map_err(Failure::new)?;
     let from = files.resume.map(read_sums).transpose()?;
-    if let Some(from) = &from {
+    match &from {
         // How far light is worth following is measured with a part of the photons, and may be another number for more of them.
-        plan.max_bounces = from.seed_and_bounces().1;
+        Some(from) => plan.max_bounces = from.seed_and_bounces().1,
+        None => ivg_bake::measure_reflections(scene, flat, plan, options).map_err(Failure::new)?,
     }
     let mut written = Instant::now();
     let mut failure = None;
